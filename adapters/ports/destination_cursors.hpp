@@ -23,4 +23,9 @@ namespace recald {
   return "identity for " + destination;
 }
 
+/// The identity under which the destination has taken something of the outbox; removed with it.
+[[nodiscard]] inline std::string taken_cursor(const std::string& destination) {
+  return identity_cursor(destination) + ", as it knows it";
+}
+
 }  // namespace recald

@@ -47,14 +47,15 @@ class Taking {
       : connection_{connection}, site_id_{site}, batch_{batch}, now_{now} {}
 
   /// Why it stopped without an error of the record.
-  enum class End : std::uint8_t { taken, unknown_outbox, partitions_missing };
+  enum class End : std::uint8_t { taken, unknown_outbox, behind, partitions_missing };
 
   [[nodiscard]] Result<End> run();
+  /// Where the outbox's watermark is then.
   [[nodiscard]] const Progress& until() const { return until_; }
 
  private:
   [[nodiscard]] Result<bool> lock();
-  [[nodiscard]] Result<void> audit_gap(const char* what, std::int64_t known, std::int64_t after);
+  [[nodiscard]] bool is_behind() const;
   [[nodiscard]] Result<void> find_meters();
   [[nodiscard]] Result<void> put_intervals();
   [[nodiscard]] Result<void> put_months();
@@ -127,9 +128,13 @@ Result<Taking::End> Taking::run() {
         ErrorCode::not_found,
         fmt::format("the record has no site {}: register it with recald fleet add", site_id_));
   }
-  const auto& [outbox, after, entries, events, results] = batch_;
+  const auto& [outbox, after, question, is_first, entries, events, results] = batch_;
   if (is_new_outbox_ && entries.empty() && events.empty() && results.empty()) {
     return End::unknown_outbox;
+  }
+  if (is_behind()) {
+    if (!is_new_outbox_) until_ = known_;
+    return End::behind;
   }
   if (!has_partitions_) return End::partitions_missing;
   const auto beyond = [](std::int64_t known, std::int64_t told, const auto& rows) {
@@ -140,10 +145,7 @@ Result<Taking::End> Taking::run() {
             .results = beyond(known_.results, after.results, results)};
   if (until_ == known_ && !is_new_outbox_) return End::taken;
 
-  auto done = audit_gap("entries", known_.entries, after.entries);
-  if (done) done = audit_gap("events", known_.events, after.events);
-  if (done) done = audit_gap("results", known_.results, after.results);
-  if (done) done = find_meters();
+  auto done = find_meters();
   if (done) done = put_intervals();
   if (done) done = put_months();
   if (done) done = put_events();
@@ -153,16 +155,13 @@ Result<Taking::End> Taking::run() {
   return End::taken;
 }
 
-Result<void> Taking::audit_gap(const char* what, std::int64_t known, std::int64_t after) {
-  if (after <= known) return {};
-  return audit(connection_, {.time = now_,
-                             .who = "ingest",
-                             .action = "gap",
-                             .subject = site_id_,
-                             .text = fmt::format(
-                                 "{} {} to {} of outbox {} never came: the gateway had to forget "
-                                 "them before the record could be reached",
-                                 what, known + 1, after, batch_.outbox)});
+/// The gateway has forgotten what this record had confirmed, or another that is lost: a backup was
+/// restored. Its next rows would hide that.
+bool Taking::is_behind() const {
+  const Progress& after = batch_.after;
+  if (is_new_outbox_) return !batch_.is_first && after != Progress{};
+  return after.entries > known_.entries || after.events > known_.events ||
+         after.results > known_.results;
 }
 
 Result<void> Taking::find_meters() {
@@ -251,28 +250,29 @@ Result<void> Taking::put_months() {
 /// A job for each new figure with which all outputs have a month; none for a figure that says what
 /// the one before it said. Each figure counts by itself: had it been the last of its batch, there
 /// would be the same jobs. A job is of the newest month that is complete by then, which is what it
-/// calculates, whichever month was corrected.
+/// calculates, whichever month was corrected. A month of which no output can be used changes
+/// nothing, and months of the future are of a gateway whose clock is wrong.
 Result<void> Taking::put_month_jobs() {
+  const std::chrono::year_month_day today{std::chrono::floor<std::chrono::days>(now_)};
   const auto rows = connection_.run(
       "WITH n AS (SELECT v.number, v.sha256, v.description->>'calibrate_from' AS first_month, "
       "ARRAY(SELECT DISTINCT jsonb_array_elements_text(v.description->'outputs')) AS outputs "
       "FROM site s JOIN site_version v ON v.site = s.number AND v.number = s.version "
       "WHERE s.number = $1) "
-      "SELECT n.number, n.sha256, (SELECT max(c.month) FROM (SELECT x.month FROM month x "
-      "JOIN meter p ON p.site = x.site AND p.number = x.meter WHERE x.site = m.site AND "
-      "x.seq <= m.seq AND p.id = ANY(n.outputs) GROUP BY x.month "
-      "HAVING count(DISTINCT p.id) = cardinality(n.outputs)) c), m.seq, "
-      "extract(epoch FROM m.closed_at)::bigint "
-      "FROM n, month m JOIN meter o ON o.site = m.site AND o.number = m.meter "
+      "SELECT n.number, n.sha256, c.newest, m.seq, extract(epoch FROM m.closed_at)::bigint "
+      "FROM n, month m JOIN meter o ON o.site = m.site AND o.number = m.meter, "
+      "LATERAL (SELECT max(month) AS newest, bool_or(month = m.month) AS has_it FROM "
+      "(SELECT x.month FROM month x JOIN meter p ON p.site = x.site AND p.number = x.meter "
+      "WHERE x.site = m.site AND x.seq <= m.seq AND x.month <= $3 AND p.id = ANY(n.outputs) "
+      "GROUP BY x.month HAVING count(DISTINCT p.id) = cardinality(n.outputs) AND "
+      "bool_or((x.figure->>'usable')::boolean)) complete) c "
       "WHERE m.site = $1 AND m.seq > $2 AND m.month >= n.first_month AND o.id = ANY(n.outputs) "
-      "AND (SELECT count(DISTINCT p.id) FROM month x JOIN meter p ON p.site = x.site AND "
-      "p.number = x.meter WHERE x.site = m.site AND x.month = m.month AND x.seq <= m.seq AND "
-      "p.id = ANY(n.outputs)) = cardinality(n.outputs) AND NOT EXISTS (SELECT FROM month q WHERE "
+      "AND c.has_it AND NOT EXISTS (SELECT FROM month q WHERE "
       "q.site = m.site AND q.meter = m.meter AND q.month = m.month AND q.seq = (SELECT max(r.seq) "
       "FROM month r WHERE r.site = m.site AND r.meter = m.meter AND r.month = m.month AND "
       "r.seq < m.seq) AND q.figure - '{closed_at,revision}'::text[] = "
       "m.figure - '{closed_at,revision}'::text[]) ORDER BY m.seq",
-      {integer(site_), integer(seq_)});
+      {integer(site_), integer(seq_), metering::to_string(today.year() / today.month())});
   if (!rows) return tl::unexpected(rows.error());
   std::vector<NewJob> jobs;
   for (int i = 0; i < rows->size(); ++i) {
@@ -360,20 +360,20 @@ Result<void> Taking::put_watermark() {
 Result<Watermark> take(Connection& connection, const std::string& site, const RecordBatch& batch,
                        Instant now) {
   for (bool has_partitions = false;;) {
-    Watermark watermark{.outbox = batch.outbox, .until = {}};
+    Watermark watermark{.outbox = batch.outbox, .until = {}, .answers = batch.question};
     auto end = Taking::End::taken;
     const auto done = connection.transaction([&]() -> Result<void> {
       Taking taking{connection, site, batch, now};
       const auto ended = taking.run();
       if (!ended) return tl::unexpected(ended.error());
       end = *ended;
-      if (end != Taking::End::taken) return failure(ErrorCode::cancelled, "");  // rolls back
       watermark.until = taking.until();
+      if (end != Taking::End::taken) return failure(ErrorCode::cancelled, "");  // rolls back
       return {};
     });
     if (done) return watermark;
     if (done.error().code != ErrorCode::cancelled) return tl::unexpected(done.error());
-    if (end == Taking::End::unknown_outbox) return watermark;
+    if (end != Taking::End::partitions_missing) return watermark;
     if (has_partitions) {
       return failure(ErrorCode::malformed, "the record has lost a partition of its intervals");
     }

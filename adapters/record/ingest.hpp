@@ -15,12 +15,13 @@ namespace recald::record {
 
 /// Commits a batch in one transaction: what is above the outbox's watermark, the watermark itself,
 /// and jobs for months that are complete now (channel `recald_job` is notified). A batch may come
-/// twice, late, or to two workers at once. What is missing before it is audited. A new outbox of
-/// the site goes on after the last row, whatever numbers it gives.
+/// twice, late, or to two workers at once. A new outbox of the site goes on after the last row,
+/// whatever numbers it gives. Where the record has less than what the gateway took for told,
+/// nothing is taken: the answer says so, and the gateway tells all of it again.
 /// @param now  When it came.
-/// @return the watermark after it, zeros for an empty batch of an outbox that the record does not
-///         know; not_found: the site is not registered, or retired; io_failed: nothing was taken as
-///         far as we know, try later.
+/// @return the watermark after it, zeros for an outbox that the record does not know (of an empty
+///         batch, or behind); not_found: the site is not registered, or retired; io_failed: nothing
+///         was taken as far as we know, try later.
 [[nodiscard]] Result<Watermark> take(postgres::Connection& connection, const std::string& site,
                                      const RecordBatch& batch, metering::Instant now);
 

@@ -393,6 +393,8 @@ std::string site_of_topic(std::string_view topic) {
 
 std::string to_json(const RecordBatch& batch) {
   return text_of_json({{"outbox", batch.outbox},
+                       {"question", batch.question},
+                       {"first", batch.is_first},
                        {"after", json_of(batch.after)},
                        {"entries", list_of(batch.entries)},
                        {"events", list_of(batch.events)},
@@ -400,7 +402,7 @@ std::string to_json(const RecordBatch& batch) {
 }
 
 std::string to_json(const Watermark& watermark) {
-  Json json = {{"outbox", watermark.outbox}};
+  Json json = {{"outbox", watermark.outbox}, {"answers", watermark.answers}};
   json.update(json_of(watermark.until));
   return text_of_json(json);
 }
@@ -422,7 +424,9 @@ Result<RecordBatch> parse_batch(std::string_view text) {
   if (!json) return tl::unexpected(json.error());
   Reader reader{kWhat};
   RecordBatch batch{.outbox = read_outbox(reader, *json),
-                    .after = read_progress(reader, reader.member(*json, "after"))};
+                    .after = read_progress(reader, reader.member(*json, "after")),
+                    .question = reader.integer(*json, "question", kNumber_max),
+                    .is_first = reader.flag(reader.member(*json, "first"), "first")};
   batch.entries = reader.list<OutboxEntry>(*json, "entries", batch.after.entries, read_entry);
   batch.events = reader.list<StoreEvent>(*json, "events", batch.after.events, read_event);
   batch.results = reader.list<StoredJob>(*json, "results", batch.after.results, read_result);
@@ -435,7 +439,9 @@ Result<Watermark> parse_watermark(std::string_view text) {
   if (!json) return tl::unexpected(json.error());
   Reader reader{kWhat};
   const std::int64_t outbox = read_outbox(reader, *json);
-  return reader.result(Watermark{.outbox = outbox, .until = read_progress(reader, *json)});
+  return reader.result(Watermark{.outbox = outbox,
+                                 .until = read_progress(reader, *json),
+                                 .answers = reader.integer(*json, "answers", kNumber_max)});
 }
 
 }  // namespace recald::record

@@ -1,13 +1,13 @@
 /// What a gateway tells the record of a fleet, and what the record answers, as messages.
 ///
-///   {"outbox":81,"after":{"entries":7,"events":2,"results":0},
+///   {"outbox":81,"question":5,"first":false,"after":{"entries":7,"events":2,"results":0},
 ///    "entries":[[8,"main",900,1772323200,0,12.5,0,0,false],  // number, meter, interval, start,
 ///                                  // revision, mean, validity, reasons (bits), late
 ///               [9,"main",900,{"month":"2026-02", …}],       // a closed month
 ///               [10,"main",900,null]],                       // what damage took
 ///    "events":[{"number":3,"time":1772323200,"kind":"meter_silent", …}],
 ///    "results":[{"number":1,"kind":"calibration","state":"done","document":"{…}", …}]}
-///   {"outbox":81,"entries":10,"events":3,"results":1}
+///   {"outbox":81,"answers":5,"entries":10,"events":3,"results":1}
 ///
 /// Times are seconds since 1970; null is a number that is not known.
 #pragma once
@@ -37,6 +37,7 @@ struct Watermark {
   /// store had before.
   std::int64_t outbox = 0;
   Progress until;
+  std::int64_t answers = 0;  ///< The question of the batch that it is about; 0: told unasked.
 
   bool operator==(const Watermark&) const = default;
 };
@@ -44,7 +45,9 @@ struct Watermark {
 /// A part of what a gateway's store has, in order. Empty: asks for the watermark.
 struct RecordBatch {
   std::int64_t outbox = 0;
-  Progress after;  ///< All up to here was told before.
+  Progress after;             ///< All up to here was told before.
+  std::int64_t question = 0;  ///< Comes back with the watermark, so that an old one is no answer.
+  bool is_first = false;      ///< The record has confirmed nothing of this outbox yet.
   std::vector<OutboxEntry> entries = {};
   std::vector<StoreEvent> events = {};
   std::vector<StoredJob> results = {};  ///< Finished ones, with their documents.

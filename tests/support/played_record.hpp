@@ -71,6 +71,12 @@ class PlayedRecord {
     if (mood == Mood::takes) order({});
   }
 
+  /// As when a backup of it is restored: of a site it has what it had then.
+  void go_back(const std::string& site, const Taken& then) {
+    const std::scoped_lock lock{mutex_};
+    taken_[site] = then;
+  }
+
   [[nodiscard]] Taken of(const std::string& site) const {
     const std::scoped_lock lock{mutex_};
     const auto found = taken_.find(site);
@@ -104,10 +110,12 @@ class PlayedRecord {
     while (ordered_.wait(lock, stop, [this] { return !orders_.empty(); })) {
       const mqtt::Message message = std::move(orders_.front());
       orders_.pop_front();
-      if (!message.topic.empty()) take(message);
+      const bool is_asked = !message.topic.empty();
+      if (is_asked) take(message);
       if (mood_ != Mood::takes) continue;
       std::vector<mqtt::Message> watermarks;
-      for (const auto& [site, taken] : taken_) {
+      for (auto& [site, taken] : taken_) {
+        if (!is_asked) taken.watermark.answers = 0;
         watermarks.push_back({.topic = record::watermark_topic(site),
                               .payload = record::to_json(taken.watermark),
                               .is_retained = true});
@@ -127,8 +135,14 @@ class PlayedRecord {
     Taken& taken = taken_[record::site_of_topic(message.topic)];
     record::Progress& until = taken.watermark.until;
     if (taken.watermark.outbox != batch->outbox) {
-      taken.watermark = {.outbox = batch->outbox, .until = batch->after};
+      taken.watermark = {.outbox = batch->outbox, .until = {}};
+      if (batch->is_first) until = batch->after;
     }
+    taken.watermark.answers = batch->question;
+    const record::Progress& after = batch->after;
+    const bool is_behind = after.entries > until.entries || after.events > until.events ||
+                           after.results > until.results;
+    if (is_behind) return;
     add(batch->entries, taken.entries, until.entries);
     add(batch->events, taken.events, until.events);
     add(batch->results, taken.results, until.results);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adapters/ports/destination_cursors.hpp"
+#include "daemon/gateway/forward/outbox_identity.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -103,7 +104,8 @@ void Forwarder::look() {
   if (is_sending_ || ports_.loop.now().monotonic < not_before_) return;
   auto batch = next();
   // A store that cannot be read says so itself.
-  if (batch && batch->size() > 0) send(std::move(*batch));
+  if (!batch || batch->size() == 0) return;
+  if (identify(*batch)) send(std::move(*batch));
 }
 
 Result<OutgoingBatch> Forwarder::next() {
@@ -155,6 +157,17 @@ Result<OutgoingBatch> Forwarder::next_history() {
   return batch;
 }
 
+Result<void> Forwarder::identify(OutgoingBatch& batch) {
+  if (!destination_.has_identity) return {};
+  const auto identity = outbox_identity(ports_.store, destination_.id);
+  if (!identity) return tl::unexpected(identity.error());
+  const auto taken = has_taken(ports_.store, destination_.id, *identity);
+  if (!taken) return tl::unexpected(taken.error());
+  batch.identity = *identity;
+  batch.is_first = batch.is_history ? batch.after.entries == 0 : !*taken;
+  return {};
+}
+
 Result<std::int64_t> Forwarder::event_position() {
   return position_of(events_cursor(destination_.id), [this]() -> Result<std::int64_t> {
     const auto last = ports_.store.events(1);
@@ -198,14 +211,17 @@ Result<OutboxPosition> Forwarder::position() {
   if (auto put = ports_.store.put_outbox_position(destination_.id, position->told); !put) {
     return tl::unexpected(put.error());
   }
-  tell_({.time = ports_.loop.now().instant(),
-         .severity = Severity::error,
-         .kind = "forward_left_out",
-         .subject = destination_.words,
-         .text = fmt::format("{} has not taken anything for so long that the oldest {} intervals "
-                             "and months are not sent to it any more; they are in the store",
-                             destination_.words, left_out),
-         .is_counted = true});
+  tell_(
+      {.time = ports_.loop.now().instant(),
+       .severity = Severity::error,
+       .kind = "forward_left_out",
+       .subject = destination_.words,
+       .text = fmt::format("{} has not taken anything for so long that the oldest {} intervals "
+                           "and months are not sent to it any more; {}",
+                           destination_.words, left_out,
+                           destination_.has_identity ? "it is sent the whole store when it is back"
+                                                     : "they are in the store"),
+       .is_counted = true});
   return position;
 }
 
@@ -240,8 +256,13 @@ void Forwarder::finish(const OutgoingBatch& batch, const Sent& sent) {
   is_sending_ = false;
   switch (sent.outcome) {
     case Sent::Outcome::taken:
+      if (sent.until && !batch.is_history && is_beyond_us(*sent.until)) {
+        return tell_anew(batch, sent);
+      }
       if (!move_past(batch)) return;
       break;
+    case Sent::Outcome::behind:
+      return tell_anew(batch, sent);
     case Sent::Outcome::partly:
       if (!set_aside(batch, sent.why)) return;
       break;
@@ -263,6 +284,10 @@ void Forwarder::finish(const OutgoingBatch& batch, const Sent& sent) {
 /// @return whether the position could be stored; if not, the batch is sent again.
 bool Forwarder::move_past(const OutgoingBatch& batch) {
   const auto moved = ports_.store.as_one([&]() -> Result<void> {
+    if (batch.identity != 0 && !batch.is_history && batch.is_first) {
+      auto put = put_taken(ports_.store, destination_.id, batch.identity);
+      if (!put) return put;
+    }
     if (!batch.entries.empty()) {
       const std::int64_t number = batch.entries.back().number;
       auto put = batch.is_history ? ports_.store.put_cursor(history_cursor(destination_.id), number)
@@ -279,6 +304,44 @@ bool Forwarder::move_past(const OutgoingBatch& batch) {
   });
   if (!moved) wait_after({.outcome = Sent::Outcome::later, .why = moved.error().message});
   return moved.has_value();
+}
+
+/// Numbers that this store never gave: it is an image of what it was once, or somebody else's.
+bool Forwarder::is_beyond_us(const record::Progress& until) {
+  const auto position = ports_.store.outbox_position(destination_.id);
+  return position && until.entries > position->last;
+}
+
+/// What one side has and the other does not know of is not guessed: all is told again, under
+/// another identity.
+void Forwarder::tell_anew(const OutgoingBatch& batch, const Sent& sent) {
+  const bool is_behind = sent.outcome == Sent::Outcome::behind;
+  const auto done = ports_.store.as_one([&]() -> Result<void> {
+    if (auto begun = begin_anew(ports_.store, destination_.id); !begun) return begun;
+    // What waits is in the store, and goes with its past.
+    const auto position = ports_.store.outbox_position(destination_.id);
+    if (!position) return tl::unexpected(position.error());
+    auto put_last = ports_.store.put_outbox_position(destination_.id, position->last);
+    if (!put_last) return put_last;
+    if (!is_behind || !sent.until) return {};
+    const auto go_back = [&](const std::string& cursor, std::int64_t from, std::int64_t to) {
+      return ports_.store.put_cursor(cursor, std::min(from, to));
+    };
+    auto put = go_back(events_cursor(destination_.id), batch.after.events, sent.until->events);
+    if (!put) return put;
+    return go_back(results_cursor(destination_.id), batch.after.results, sent.until->results);
+  });
+  if (!done) return wait_after({.outcome = Sent::Outcome::later, .why = done.error().message});
+  tell_({.time = ports_.loop.now().instant(),
+         .severity = Severity::warning,
+         .kind = "forward_anew",
+         .subject = destination_.words,
+         .text = fmt::format(
+             "{} has {} than it was told, as after a backup of {} was restored; everything that "
+             "the store has is sent to it again",
+             destination_.words, is_behind ? "less" : "more", is_behind ? "it" : "this gateway"),
+         .is_counted = true});
+  schedule(milliseconds{0});
 }
 
 bool Forwarder::set_aside(const OutgoingBatch& batch, const std::string& why) {

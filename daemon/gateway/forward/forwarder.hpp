@@ -39,6 +39,7 @@ struct Destination {
   std::string words;  ///< For people: "Prometheus at metrics.example.org".
   bool wants_events = false;
   bool wants_results = false;
+  bool has_identity = false;  ///< It remembers positions (outbox_identity).
   /// Whose past it is told first, before what the outbox has.
   std::vector<MeterInStore> history = {};
 };
@@ -85,7 +86,10 @@ class Forwarder {
                                                  const std::function<Result<std::int64_t>()>& last);
   void send(OutgoingBatch batch);
   void finish(const OutgoingBatch& batch, const Sent& sent);
+  [[nodiscard]] Result<void> identify(OutgoingBatch& batch);
   [[nodiscard]] bool move_past(const OutgoingBatch& batch);
+  [[nodiscard]] bool is_beyond_us(const record::Progress& until);
+  void tell_anew(const OutgoingBatch& batch, const Sent& sent);
   [[nodiscard]] bool set_aside(const OutgoingBatch& batch, const std::string& why);
   void wait_after(const Sent& sent);
   void tell_of_success();

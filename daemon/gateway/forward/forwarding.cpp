@@ -68,6 +68,7 @@ Destination destination_of_fleet(const SiteConfig& site) {
           .words = "fleet at " + site.fleet->where(),
           .wants_events = true,
           .wants_results = true,
+          .has_identity = true,
           .history = stored_meters(site)};
 }
 
@@ -222,9 +223,7 @@ void Forwarding::keep_outbox() {
     add_forwarder(destination_of(write), make_series_sink(site_, calendar_, write));
   }
   if (!site_->fleet) return;
-  const auto outbox = outbox_identity(ports_.store, kFleet);
-  if (!outbox) return begin_again_in_a_minute();
-  add_forwarder(destination_of_fleet(*site_), make_record_sink(site_->id, *outbox, fleet_));
+  add_forwarder(destination_of_fleet(*site_), make_record_sink(site_->id, fleet_));
 }
 
 void Forwarding::add_forwarder(Destination destination, std::unique_ptr<Sink> sink) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -10,16 +11,25 @@
 namespace recald::daemon {
 namespace {
 
+/// Far from where counting on from it would overflow.
+std::int64_t random_number() {
+  std::random_device random;
+  return std::uniform_int_distribution<std::int64_t>{1, std::int64_t{1} << 61}(random);
+}
+
+}  // namespace
+
 bool covers(const record::Watermark& said, const record::Watermark& wanted) {
   return said.outbox == wanted.outbox && said.until.entries >= wanted.until.entries &&
          said.until.events >= wanted.until.events && said.until.results >= wanted.until.results;
 }
 
-}  // namespace
-
 RecordLink::RecordLink(std::string topic, std::shared_ptr<Heard> heard,
                        std::unique_ptr<mqtt::Connection> connection)
-    : topic_(std::move(topic)), heard_(std::move(heard)), connection_(std::move(connection)) {}
+    : topic_(std::move(topic)),
+      question_(random_number()),
+      heard_(std::move(heard)),
+      connection_(std::move(connection)) {}
 
 Result<std::shared_ptr<RecordLink>> RecordLink::open(const BrokerConfig& broker,
                                                      const std::string& site, OnSign on_sign,
@@ -34,6 +44,11 @@ Result<std::shared_ptr<RecordLink>> RecordLink::open(const BrokerConfig& broker,
     {
       const std::scoped_lock lock{heard->mutex};
       heard->last = *watermark;
+      if (watermark->answers != 0) {
+        heard->last_answer = *watermark;
+      } else {
+        ++heard->calls;
+      }
     }
     heard->changed.notify_all();
     on_sign();
@@ -60,15 +75,29 @@ Result<void> RecordLink::publish(std::string batch, std::chrono::milliseconds ti
   return connection_->publish(messages, time_max, stop);
 }
 
-bool RecordLink::wait_for(const record::Watermark& wanted, std::chrono::milliseconds time_max,
-                          const std::stop_token& stop) const {
+int RecordLink::calls() const {
+  const std::scoped_lock lock{heard_->mutex};
+  return heard_->calls;
+}
+
+std::optional<record::Watermark> RecordLink::wait_for(const record::Watermark& wanted, int calls,
+                                                      std::chrono::milliseconds time_max,
+                                                      const std::stop_token& stop) const {
   std::unique_lock lock{heard_->mutex};
-  const auto is_confirmed = [&] { return heard_->last && covers(*heard_->last, wanted); };
+  std::optional<record::Watermark> settled;
   // What was on its way when the connection broke may never have arrived.
   const int losses = heard_->losses;
-  heard_->changed.wait_for(lock, stop, time_max,
-                           [&] { return is_confirmed() || heard_->losses != losses; });
-  return is_confirmed();
+  heard_->changed.wait_for(lock, stop, time_max, [&] {
+    const Heard& heard = *heard_;
+    const auto& answer = heard.last_answer;
+    if (heard.last && covers(*heard.last, wanted)) {
+      settled = heard.last;
+    } else if (wanted.answers != 0 && answer && answer->answers == wanted.answers) {
+      settled = answer;
+    }
+    return settled || heard.losses != losses || heard.calls != calls;
+  });
+  return settled;
 }
 
 }  // namespace recald::daemon

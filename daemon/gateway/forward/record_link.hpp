@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -15,6 +16,9 @@
 #include "daemon/site/config/broker_config.hpp"
 
 namespace recald::daemon {
+
+/// Whether a watermark confirms all that another one stands for.
+[[nodiscard]] bool covers(const record::Watermark& said, const record::Watermark& wanted);
 
 class RecordLink {
  public:
@@ -33,10 +37,21 @@ class RecordLink {
   [[nodiscard]] Result<void> publish(std::string batch, std::chrono::milliseconds time_max,
                                      const std::stop_token& stop);
 
-  /// Waits until the record has confirmed all of this, or the connection is lost. @return whether
-  /// it has.
-  [[nodiscard]] bool wait_for(const record::Watermark& wanted, std::chrono::milliseconds time_max,
-                              const std::stop_token& stop) const;
+  /// A number that no other batch of this process has, and hardly one of another.
+  [[nodiscard]] std::int64_t next_question() { return ++question_; }
+
+  /// How often the record has said unasked how far it is: it has just come, and what was on its way
+  /// to it may be lost.
+  [[nodiscard]] int calls() const;
+
+  /// Waits until the record has confirmed all of `wanted`, has answered its question otherwise, has
+  /// called again, or the connection is lost.
+  /// @param calls  Those of before.
+  /// @return what settled it; nothing: neither came.
+  [[nodiscard]] std::optional<record::Watermark> wait_for(const record::Watermark& wanted,
+                                                          int calls,
+                                                          std::chrono::milliseconds time_max,
+                                                          const std::stop_token& stop) const;
 
   [[nodiscard]] bool is_connected() const { return connection_->is_connected(); }
 
@@ -45,14 +60,16 @@ class RecordLink {
   struct Heard {
     std::mutex mutex;
     std::condition_variable_any changed;
-    std::optional<record::Watermark> last;
+    std::optional<record::Watermark> last, last_answer;
     int losses = 0;  ///< Of the connection.
+    int calls = 0;
   };
 
   RecordLink(std::string topic, std::shared_ptr<Heard> heard,
              std::unique_ptr<mqtt::Connection> connection);
 
   std::string topic_;
+  std::int64_t question_;
   std::shared_ptr<Heard> heard_;
   std::unique_ptr<mqtt::Connection> connection_;
 };

@@ -4,12 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
-#include <random>
 #include <utility>
 #include <vector>
-
-#include "adapters/ports/destination_cursors.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -29,9 +25,14 @@ void move_front(std::vector<T>& from, std::vector<T>& to, std::size_t& left) {
   from.erase(from.begin(), end);
 }
 
+std::string without_documents(RecordBatch& batch) {
+  for (StoredJob& job : batch.results) job.result.document.clear();
+  return record::to_json(batch);
+}
+
 /// Takes the first half out of a batch, which then follows it.
 RecordBatch take_half(RecordBatch& batch) {
-  RecordBatch half{.outbox = batch.outbox, .after = batch.after};
+  RecordBatch half{.outbox = batch.outbox, .after = batch.after, .is_first = batch.is_first};
   std::size_t left = count_in(batch) / 2;
   move_front(batch.entries, half.entries, left);
   move_front(batch.events, half.events, left);
@@ -42,14 +43,14 @@ RecordBatch take_half(RecordBatch& batch) {
 
 class RecordSink final : public Sink {
  public:
-  RecordSink(std::string site, std::int64_t outbox, std::shared_ptr<RecordLink> link,
-             const RecordRules& rules)
-      : site_(std::move(site)), outbox_(outbox), link_(std::move(link)), rules_(rules) {}
+  RecordSink(std::string site, std::shared_ptr<RecordLink> link, const RecordRules& rules)
+      : site_(std::move(site)), link_(std::move(link)), rules_(rules) {}
 
   Sent send(const OutgoingBatch& batch, const std::stop_token& stop) override {
     if (!link_) return waits("it is not connected");
-    return send(RecordBatch{.outbox = batch.is_history ? -outbox_ : outbox_,
+    return send(RecordBatch{.outbox = batch.is_history ? -batch.identity : batch.identity,
                             .after = batch.after,
+                            .is_first = batch.is_first,
                             .entries = batch.entries,
                             .events = batch.events,
                             .results = batch.results},
@@ -62,22 +63,36 @@ class RecordSink final : public Sink {
   }
 
   Sent send(RecordBatch batch, const std::stop_token& stop) {
-    const record::Watermark wanted{.outbox = batch.outbox, .until = batch.until()};
+    record::Watermark wanted{.outbox = batch.outbox, .until = batch.until()};
     // What was sent before the last failure may have arrived after it.
-    if (link_->wait_for(wanted, std::chrono::milliseconds{0}, stop)) return {};
+    const int calls = link_->calls();
+    if (const auto said = link_->wait_for(wanted, calls, std::chrono::milliseconds{0}, stop)) {
+      return {.until = said->until};
+    }
+    wanted.answers = batch.question = link_->next_question();
     std::string payload = record::to_json(batch);
     if (payload.size() > rules_.payload_bytes && count_in(batch) > 1) {
-      Sent sent = send(take_half(batch), stop);
-      return sent.outcome == Sent::Outcome::taken ? send(std::move(batch), stop) : sent;
+      return send_in_halves(std::move(batch), stop);
     }
-    if (payload.size() > rules_.result_bytes && !batch.results.empty()) {
-      batch.results.front().result.document.clear();
-      payload = record::to_json(batch);
+    if (payload.size() > rules_.result_bytes) payload = without_documents(batch);
+    auto published = link_->publish(payload, rules_.publish_max, stop);
+    if (!published && published.error().code == ErrorCode::out_of_range) {
+      // The broker takes less than we do.
+      if (count_in(batch) > 1) return send_in_halves(std::move(batch), stop);
+      published = link_->publish(without_documents(batch), rules_.publish_max, stop);
     }
-    if (auto sent = link_->publish(std::move(payload), rules_.publish_max, stop); !sent) {
-      return waits(sent.error().message);
+    if (!published) return waits(published.error().message);
+    const auto until = std::chrono::steady_clock::now() + rules_.confirm_max;
+    const auto said = link_->wait_for(wanted, calls, rules_.confirm_max, stop);
+    if (said) {
+      const bool is_taken = covers(*said, wanted);
+      return {.outcome = is_taken ? Sent::Outcome::taken : Sent::Outcome::behind,
+              .until = said->until};
     }
-    if (link_->wait_for(wanted, rules_.confirm_max, stop)) return {};
+    if (link_->calls() != calls && !stop.stop_requested()) return send(std::move(batch), stop);
+    if (std::chrono::steady_clock::now() < until) {
+      return waits("the connection was lost before the fleet's record confirmed what was sent");
+    }
     return waits(
         fmt::format("the fleet's record has not confirmed what was sent within {} s; `recald "
                     "worker` or its PostgreSQL is away, or site '{}' is not registered there with "
@@ -85,29 +100,23 @@ class RecordSink final : public Sink {
                     std::chrono::duration<double>{rules_.confirm_max}.count(), site_));
   }
 
+  Sent send_in_halves(RecordBatch batch, const std::stop_token& stop) {
+    Sent sent = send(take_half(batch), stop);
+    if (sent.outcome != Sent::Outcome::taken) return sent;
+    batch.is_first = false;
+    return send(std::move(batch), stop);
+  }
+
   std::string site_;
-  std::int64_t outbox_;
   std::shared_ptr<RecordLink> link_;
   RecordRules rules_;
 };
 
 }  // namespace
 
-std::unique_ptr<Sink> make_record_sink(std::string site, std::int64_t outbox,
-                                       std::shared_ptr<RecordLink> link, const RecordRules& rules) {
-  return std::make_unique<RecordSink>(std::move(site), outbox, std::move(link), rules);
-}
-
-Result<std::int64_t> outbox_identity(Store& store, const std::string& destination) {
-  const std::string cursor = identity_cursor(destination);
-  const auto known = store.cursor(cursor);
-  if (!known) return tl::unexpected(known.error());
-  if (*known) return **known;
-  std::random_device random;
-  std::uniform_int_distribution<std::int64_t> any{1, std::numeric_limits<std::int64_t>::max()};
-  const std::int64_t identity = any(random);
-  if (auto put = store.put_cursor(cursor, identity); !put) return tl::unexpected(put.error());
-  return identity;
+std::unique_ptr<Sink> make_record_sink(std::string site, std::shared_ptr<RecordLink> link,
+                                       const RecordRules& rules) {
+  return std::make_unique<RecordSink>(std::move(site), std::move(link), rules);
 }
 
 }  // namespace recald::daemon

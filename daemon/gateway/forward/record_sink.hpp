@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -24,14 +23,9 @@ struct RecordRules {
 /// Takes a batch only when the record has said that it is committed: what the broker has
 /// acknowledged does not count. Nothing is ever refused for good.
 /// @param site    Its id.
-/// @param outbox  Its identity (outbox_identity).
 /// @param link    Null while there is none: everything waits.
-[[nodiscard]] std::unique_ptr<Sink> make_record_sink(std::string site, std::int64_t outbox,
+[[nodiscard]] std::unique_ptr<Sink> make_record_sink(std::string site,
                                                      std::shared_ptr<RecordLink> link,
                                                      const RecordRules& rules = {});
-
-/// Which numbering the positions of a destination are of: a random number, made when there is none.
-/// @return 1 … 2^63 - 1
-[[nodiscard]] Result<std::int64_t> outbox_identity(Store& store, const std::string& destination);
 
 }  // namespace recald::daemon

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct OutgoingBatch {
   std::vector<StoredJob> results;  ///< Finished jobs.
   record::Progress after = {};     ///< Where the destination is before it, in what it wants.
   bool is_history = false;  ///< Entries of `history_after`, which are numbered by themselves.
+  /// Which numbering these positions are of (outbox_identity); 0: the destination has none.
+  std::int64_t identity = 0;
+  bool is_first = false;  ///< The destination has taken nothing of this numbering yet.
 
   [[nodiscard]] std::size_t size() const { return entries.size() + events.size() + results.size(); }
 };
@@ -28,10 +32,13 @@ struct Sent {
     partly,   ///< Some of it was left out for good, and the rest taken.
     refused,  ///< Nothing was taken, and the same batch never will be: a part of it may be.
     later,    ///< Nothing is wrong with the batch.
+    behind,   ///< The destination has less than `after`, which it had taken once.
   };
   Outcome outcome = Outcome::taken;
   std::string why = {};          ///< Unless taken: who said what.
   std::chrono::seconds wait{0};  ///< Of `later`: at least so long, as the other side asks.
+  /// Where the destination is, if it says so: of `taken` and `behind`.
+  std::optional<record::Progress> until = {};
 };
 
 class Sink {

@@ -66,7 +66,6 @@ TEST_F(Record, WhatComesTwiceOrLateCountsOnce) {
   EXPECT_EQ(send(intervals(0, 10))->until, entries(15));  // late
   EXPECT_EQ(ask("SELECT count(*), min(seq), max(seq), count(DISTINCT t_start) FROM interval"),
             "15|1|15|15\n");
-  EXPECT_EQ(ask("SELECT count(*) FROM audit WHERE action = 'gap'"), "0\n");
   EXPECT_THAT(*watermarks(*connection_),
               ElementsAre(Pair("tower", Watermark{.outbox = 11, .until = entries(15)})));
 }
@@ -89,36 +88,42 @@ TEST_F(Record, TwoConnectionsWithTheSameBatchesTakeEachOnce) {
   EXPECT_EQ(ask("SELECT count(*) FROM meter"), "1\n");
 }
 
-TEST_F(Record, AGapIsTakenAndToldOf) {
+// A backup of the record was restored: gateways have forgotten what it had confirmed since.
+TEST_F(Record, WhatItHasLessThanItConfirmedIsSaidAndNothingIsTaken) {
   ASSERT_TRUE(send(intervals(0, 5)));
   auto batch = intervals(8, 2);
-  batch.after.events = 4;
-  const auto taken = send(batch);
-  ASSERT_TRUE(taken) << taken.error().message;
-  EXPECT_EQ(taken->until, (Progress{.entries = 10, .events = 4}));
-  const auto told = audited(*connection_, 2);
-  ASSERT_EQ(told->size(), 2u);
-  EXPECT_EQ(told->at(1).action, "gap");
-  EXPECT_EQ(told->at(1).subject, "tower");
-  EXPECT_THAT(told->at(1).text, HasSubstr("entries 6 to 8 of outbox 11 never came"));
-  EXPECT_THAT(told->at(0).text, HasSubstr("events 1 to 4"));
-  EXPECT_EQ(ask("SELECT max(seq), count(*) FROM interval"), "10|7\n");
-  // Told once.
-  ASSERT_TRUE(send(batch));
-  EXPECT_EQ(ask("SELECT count(*) FROM audit WHERE action = 'gap'"), "2\n");
+  batch.question = 17;
+  const auto answer = send(batch);
+  ASSERT_TRUE(answer) << answer.error().message;
+  EXPECT_EQ(*answer, (Watermark{.outbox = 11, .until = entries(5), .answers = 17}));
+  batch = intervals(5, 2);
+  batch.after.events = 1;
+  EXPECT_EQ(send(batch)->until, entries(5));
+  batch.after.events = 0;
+  batch.after.results = 1;
+  EXPECT_EQ(send(batch)->until, entries(5));
+  EXPECT_EQ(ask("SELECT max(seq), count(*) FROM interval"), "5|5\n");
+  // Of an outbox that it does not know at all: unless that says itself that it begins.
+  auto other = intervals(8, 2, 22);
+  EXPECT_EQ(send(other)->until, Progress{});
+  EXPECT_EQ(ask("SELECT count(*) FROM source"), "1\n");
+  other.is_first = true;
+  EXPECT_EQ(send(other)->until, entries(10));
+  other.is_first = false;
+  EXPECT_EQ(send(other)->until, entries(10));
+  EXPECT_EQ(ask("SELECT max(seq), count(*) FROM interval"), "7|7\n");
 }
 
 TEST_F(Record, AnotherOutboxGoesOnAndItsRowsWin) {
   ASSERT_TRUE(send(intervals(0, 10)));
   const std::string before = contents(*connection_, 10);
   // A restored backup gives numbers from 6 on again, for other values.
-  RecordBatch restored{.outbox = 22, .after = entries(5)};
+  RecordBatch restored{.outbox = 22, .after = entries(5), .is_first = true};
   restored.entries = {interval_entry(6, "steam", kMarch + kQuarter, 77.0),
                       interval_entry(7, "power", kMarch, 1.0)};
   const auto taken = send(restored);
   ASSERT_TRUE(taken) << taken.error().message;
   EXPECT_EQ(*taken, (Watermark{.outbox = 22, .until = entries(7)}));
-  EXPECT_EQ(ask("SELECT count(*) FROM audit WHERE action = 'gap'"), "0\n");
   EXPECT_EQ(ask("SELECT mean_kw, seq FROM interval WHERE seq > 10 ORDER BY seq"), "77|11\n1|12\n");
   EXPECT_EQ(contents(*connection_, 10), before);
   EXPECT_THAT(contents(*connection_, 12), HasSubstr("2024-03-01T00:15:00Z 77 ok"));
@@ -271,10 +276,11 @@ TEST_F(Record, EventsAndResultsOfGatewaysAreKeptOnce) {
   EXPECT_EQ(results->at(0).month, month_of(2024, 3));
   EXPECT_EQ(results->at(0).at, kNow + std::chrono::seconds{60});
   EXPECT_TRUE(results->at(0).accepted);
-  EXPECT_EQ(results->at(0).summary, "{\"gap\":0.1}");
+  EXPECT_EQ(results->at(0).summary, "");
+  EXPECT_EQ(ask("SELECT summary FROM result"), "{\"gap\":0.1}\n");
   EXPECT_EQ(ask("SELECT count(*) FROM result"), "1\n");
   // A new outbox numbers its events again.
-  RecordBatch restored{.outbox = 12, .after = {.events = 1}};
+  RecordBatch restored{.outbox = 12, .after = {.events = 1}, .is_first = true};
   restored.events = {{.time = kNow, .kind = "restored", .number = 2}};
   ASSERT_TRUE(send(restored));
   EXPECT_EQ(ask("SELECT number, kind FROM event WHERE number > 2"), "3|restored\n");
@@ -318,6 +324,35 @@ TEST_F(Record, AMonthOfAllOutputsIsAJob) {
   EXPECT_EQ(found->at(0).month, month_of(2024, 2));
   EXPECT_EQ(found->at(0).until_seq, 7);
   EXPECT_NE(found->at(0).input_sha256, first.input_sha256);
+}
+
+TEST_F(Record, AMonthWithoutAnOutputThatCanBeUsedIsNoJob) {
+  RecordBatch batch{.outbox = 11};
+  batch.entries = {month_entry(1, "steam", month_of(2024, 3), 1.0),
+                   month_entry(2, "power", month_of(2024, 3), 1.0)};
+  for (OutboxEntry& entry : batch.entries)
+    std::get<StoredMonth>(entry.stored).figure.usable = false;
+  ASSERT_TRUE(send(batch));
+  EXPECT_EQ(ask("SELECT count(*) FROM job"), "0\n");
+  // Readings came late.
+  RecordBatch late{.outbox = 11, .after = entries(2)};
+  late.entries = {month_entry(3, "power", month_of(2024, 3), 2.0)};
+  ASSERT_TRUE(send(late));
+  EXPECT_EQ(ask("SELECT month, until_seq FROM job"), "2024-03|3\n");
+}
+
+TEST_F(Record, AMonthOfTheFutureIsNoJobAndNoJobsLabel) {
+  RecordBatch batch{.outbox = 11};
+  batch.entries = {month_entry(1, "steam", month_of(2024, 2), 1.0),
+                   month_entry(2, "steam", month_of(2026, 8), 1.0),
+                   month_entry(3, "power", month_of(2026, 8), 1.0)};
+  ASSERT_TRUE(send(batch));
+  EXPECT_EQ(ask("SELECT count(*) FROM job"), "0\n");
+  // The clock is right again.
+  RecordBatch rest{.outbox = 11, .after = entries(3)};
+  rest.entries = {month_entry(4, "power", month_of(2024, 2), 1.0)};
+  ASSERT_TRUE(send(rest));
+  EXPECT_EQ(ask("SELECT month, until_seq FROM job"), "2024-02|4\n");
 }
 
 TEST_F(Record, AnOlderMonthThatIsCorrectedIsCalculatedWithTheNewest) {

@@ -22,7 +22,9 @@ const Instant kMarch = std::chrono::sys_days{std::chrono::year{2026} / 3 / 1};
 /// One of each kind, with no value that could be a default.
 RecordBatch sample_batch() {
   RecordBatch batch{.outbox = 9'223'372'036'854'775'807,
-                    .after = {.entries = 7, .events = 2, .results = 1}};
+                    .after = {.entries = 7, .events = 2, .results = 1},
+                    .question = 9'223'372'036'854'775'806,
+                    .is_first = true};
   const metering::Reading reading{.meter = 0,
                                   .start = kMarch,
                                   .mean_kW = 0.1 + 0.2,
@@ -84,7 +86,9 @@ class RandomBatches {
 
   RecordBatch next() {
     RecordBatch batch{.outbox = 1 + static_cast<std::int64_t>(rng_.next() >> 1),
-                      .after = {number(), number(), number()}};
+                      .after = {number(), number(), number()},
+                      .question = number(),
+                      .is_first = up_to(1) == 1};
     std::int64_t last = batch.after.entries;
     for (int i = up_to(5); i > 0; --i) batch.entries.push_back(entry(last += 1 + up_to(3)));
     last = batch.after.events;
@@ -182,6 +186,8 @@ TEST(RecordBatch, EveryFieldComesThrough) {
   ASSERT_TRUE(read.has_value()) << read.error().message;
   EXPECT_EQ(read->outbox, 9'223'372'036'854'775'807);
   EXPECT_EQ(read->after, (Progress{.entries = 7, .events = 2, .results = 1}));
+  EXPECT_EQ(read->question, 9'223'372'036'854'775'806);
+  EXPECT_TRUE(read->is_first);
   EXPECT_EQ(read->until(), (Progress{.entries = 11, .events = 3, .results = 2}));
   ASSERT_THAT(read->entries, SizeIs(3));
   EXPECT_EQ(read->entries[0].meter, "main");
@@ -333,13 +339,14 @@ TEST(RecordBatch, EveryFieldIsNeeded) {
       ++missing;
     }
   }
-  EXPECT_EQ(missing, 5 + 3 + 15 + 3 + 8 + 10);
+  EXPECT_EQ(missing, 7 + 3 + 15 + 3 + 8 + 10);
 }
 
 TEST(RecordBatch, AWatermarkIsTheSameAgain) {
-  const Watermark watermark{.outbox = 123, .until = {.entries = 500, .events = 3, .results = 1}};
+  const Watermark watermark{
+      .outbox = 123, .until = {.entries = 500, .events = 3, .results = 1}, .answers = 17};
   const std::string written = to_json(watermark);
-  EXPECT_EQ(written, R"({"outbox":123,"entries":500,"events":3,"results":1})");
+  EXPECT_EQ(written, R"({"outbox":123,"answers":17,"entries":500,"events":3,"results":1})");
   EXPECT_EQ(parse_watermark(written).value(), watermark);
   EXPECT_THAT(parse_watermark("nonsense").error().message, HasSubstr("is no JSON object"));
   EXPECT_THAT(parse_watermark(R"({"outbox":1,"entries":1,"events":1})").error().message,

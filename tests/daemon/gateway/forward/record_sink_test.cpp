@@ -5,10 +5,13 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <set>
+#include <utility>
 
 #include "adapters/ports/destination_cursors.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "daemon/gateway/forward/forwarder.hpp"
+#include "daemon/gateway/forward/outbox_identity.hpp"
 #include "tests/support/mosquitto.hpp"
 #include "tests/support/played_record.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -21,6 +24,7 @@ namespace {
 using metering::Instant;
 using recald::testing::eventually;
 using recald::testing::Mosquitto;
+using recald::testing::MosquittoOptions;
 using recald::testing::PlayedRecord;
 using recald::testing::TemporaryFolder;
 using recald::testing::VirtualLoop;
@@ -29,7 +33,6 @@ using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
@@ -45,6 +48,7 @@ constexpr RecordRules kHasty{.confirm_max = milliseconds{200}};
 
 class RecordSinkTest : public ::testing::Test {
  protected:
+  explicit RecordSinkTest(const MosquittoOptions& options = {}) : broker_{options} {}
   void SetUp() override {
     if (!Mosquitto::can_run()) GTEST_SKIP() << "mosquitto of Debian is not installed";
     broker_.start();
@@ -68,9 +72,13 @@ class RecordSinkTest : public ::testing::Test {
     ASSERT_TRUE(is_connected());
     forwarder_ = std::make_unique<Forwarder>(
         Forwarder::Ports{loop_, store_}, std::make_unique<VirtualWorker>(loop_, seconds{1}),
-        Destination{
-            .id = "fleet", .words = "the fleet", .wants_events = true, .wants_results = true},
-        make_record_sink("depot", outbox_identity(store_, "fleet").value(), link_, rules),
+        Destination{.id = "fleet",
+                    .words = "the fleet",
+                    .wants_events = true,
+                    .wants_results = true,
+                    .has_identity = true,
+                    .history = history_},
+        make_record_sink("depot", link_, rules),
         [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); });
     forwarder_->start();
   }
@@ -99,6 +107,11 @@ class RecordSinkTest : public ::testing::Test {
     job.result.document = document;
     ASSERT_TRUE(store_.add_job(job).has_value());
   }
+  static std::vector<record::RecordBatch> batches_of(const std::vector<std::string>& payloads) {
+    std::vector<record::RecordBatch> batches;
+    for (const std::string& one : payloads) batches.push_back(record::parse_batch(one).value());
+    return batches;
+  }
   /// @param until  Where the first begins.
   static void expect_one_after_the_other(const PlayedRecord& record, record::Progress until) {
     for (const std::string& payload : record.payloads()) {
@@ -116,6 +129,7 @@ class RecordSinkTest : public ::testing::Test {
   TemporaryFolder folder_;
   sqlite::SqliteStore store_ = sqlite::SqliteStore::open(folder_ / "site.db").value();
   std::uint32_t main_ = store_.meter_number("main", seconds{900}).value();
+  std::vector<MeterInStore> history_ = {};
   VirtualLoop loop_{kNoon};
   Mosquitto broker_;  ///< Without persistence: a kill wipes it.
   std::atomic<int> signs_ = 0;
@@ -166,7 +180,11 @@ TEST_F(RecordSinkTest, WithoutAWatermarkNothingIsForgottenAndTheSameComesAgain) 
   loop_.run_for(minutes{1});
   const auto payloads = record.payloads();
   ASSERT_GE(payloads.size(), 2u);
-  EXPECT_THAT(payloads, Each(payloads.front()));
+  auto batches = batches_of(payloads);
+  std::set<std::int64_t> questions;
+  for (record::RecordBatch& batch : batches) questions.insert(std::exchange(batch.question, 0));
+  EXPECT_THAT(questions, SizeIs(payloads.size()));
+  for (const auto& batch : batches) EXPECT_EQ(to_json(batch), to_json(batches.front()));
   EXPECT_EQ(forwarder_->status().waiting, 3);
   EXPECT_THAT(told_, ElementsAre(HasSubstr("the fleet's record has not confirmed what was sent "
                                            "within 0.2 s; `recald worker` or its PostgreSQL is "
@@ -290,6 +308,77 @@ TEST_F(RecordSinkTest, AStoreOfAnotherNumberingIsAnotherOutbox) {
   EXPECT_THAT(record.means_of("depot"), ElementsAre(0, 1, 2, 3, 4, 6, 7));
 }
 
+// A backup of the record is restored, or it is lost and made again.
+TEST_F(RecordSinkTest, ARecordThatHasLessThanItHadIsToldEverythingAgain) {
+  PlayedRecord record{broker_.port()};
+  history_ = {{"main", seconds{900}}};
+  happens("long_ago");
+  begin();
+  loop_.run_for(seconds{10});
+  store(0, 5);
+  loop_.run_for(minutes{1});
+  happens("meter_silent");
+  finish_job("{}");
+  loop_.run_for(minutes{1});
+  ASSERT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 5)));
+  const PlayedRecord::Taken then = record.of("depot");
+  store(5, 8);
+  happens("meter_answers");
+  loop_.run_for(minutes{1});
+  ASSERT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 8)));
+  int next = 8;
+  for (const PlayedRecord::Taken& before : {then, PlayedRecord::Taken{}}) {
+    told_.clear();
+    record.go_back("depot", before);
+    loop_.run_for(minutes{1});
+    const auto already = static_cast<int>(before.entries.size());
+    EXPECT_THAT(record.means_of("depot"), SizeIs(already));  // nobody has noticed
+    store(next, next + 1);
+    loop_.run_for(minutes{1});
+    const auto taken = record.of("depot");
+    std::vector<double> all = numbers(0, already);
+    std::ranges::copy(numbers(0, ++next), std::back_inserter(all));
+    EXPECT_THAT(record.means_of("depot"), ElementsAreArray(all));
+    EXPECT_NE(taken.watermark.outbox, then.watermark.outbox);
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("forward_anew: the fleet has less than it was told")));
+    EXPECT_EQ(forwarder_->status().waiting, 0);
+    store(next, next + 1);
+    happens("meter_silent");
+    loop_.run_for(minutes{1});
+    EXPECT_THAT(record.means_of("depot"), SizeIs(already + ++next));
+    // A record that was lost hears of what was before it, too.
+    const auto events = store_.events_after(already > 0 ? 1 : 0, 100).value();
+    EXPECT_THAT(record.of("depot").events, SizeIs(events.size()));
+    EXPECT_THAT(record.of("depot").results, SizeIs(1));
+  }
+}
+
+// Numbers are given again, for other readings.
+TEST_F(RecordSinkTest, AnImageOfAnEarlierStoreIsAnotherOutbox) {
+  const PlayedRecord record{broker_.port()};
+  history_ = {{"main", seconds{900}}};
+  begin();
+  loop_.run_for(seconds{10});
+  store(0, 5);
+  loop_.run_for(minutes{1});
+  end();
+  store_ = sqlite::SqliteStore::open(folder_ / "other.db").value();  // closes the first
+  std::filesystem::copy_file(folder_ / "site.db", folder_ / "image.db");
+  store_ = sqlite::SqliteStore::open(folder_ / "site.db").value();
+  begin();
+  store(5, 9);
+  loop_.run_for(minutes{1});
+  ASSERT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 9)));
+  end();
+  store_ = sqlite::SqliteStore::open(folder_ / "image.db").value();
+  begin();
+  store(20, 22);
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(record.means_of("depot"),
+              ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 0, 1, 2, 3, 4, 20, 21));
+  EXPECT_THAT(told_, ElementsAre(HasSubstr("forward_anew: the fleet has more than it was told")));
+}
+
 TEST_F(RecordSinkTest, MessagesAreNotTooLong) {
   const PlayedRecord record{broker_.port()};
   begin({.payload_bytes = 1500, .result_bytes = 4000});
@@ -315,6 +404,27 @@ TEST_F(RecordSinkTest, MessagesAreNotTooLong) {
   }
   EXPECT_EQ(with_results, 3);
   expect_one_after_the_other(record, {});
+  EXPECT_EQ(forwarder_->status().waiting, 0);
+}
+
+class StrictBrokerTest : public RecordSinkTest {
+ protected:
+  StrictBrokerTest() : RecordSinkTest({.more = "max_packet_size 3000\n"}) {}
+};
+
+TEST_F(StrictBrokerTest, ABrokerMayTakeShorterMessagesThanARecordDoes) {
+  const PlayedRecord record{broker_.port()};
+  begin();
+  loop_.run_for(seconds{10});
+  store(0, 100);
+  finish_job(std::string(1000, 'a'));
+  finish_job(std::string(5000, 'b'));
+  loop_.run_for(minutes{1});
+  const auto taken = record.of("depot");
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 100)));
+  ASSERT_THAT(taken.results, SizeIs(2));
+  EXPECT_EQ(taken.results[0].result.document, std::string(1000, 'a'));
+  EXPECT_EQ(taken.results[1].result.document, "");
   EXPECT_EQ(forwarder_->status().waiting, 0);
 }
 
