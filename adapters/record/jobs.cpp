@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "adapters/record/files.hpp"
 #include "adapters/record/job_rows.hpp"
 #include "adapters/record/values.hpp"
 
@@ -290,7 +291,7 @@ Result<std::map<std::string, std::string>> state_before(Connection& connection,
                                                         const FleetJob& job) {
   const auto rows = connection.run(
       fmt::format("SELECT n.name, f.bytes FROM job j JOIN site_state n ON n.job = "
-                  "coalesce(j.state_of, {}) JOIN file f ON f.sha256 = n.sha256 WHERE j.number = $1",
+                  "coalesce(j.state_of, {}) JOIN whole_file f ON f.sha256 = n.sha256 WHERE j.number = $1",
                   kJobBefore),
       {integer(job.number)});
   if (!rows) return tl::unexpected(rows.error());
@@ -367,6 +368,20 @@ Result<std::vector<FleetJob>> jobs(Connection& connection, const std::string& si
                      {site, integer(limit)}));
 }
 
+Result<std::vector<FleetJob>> troubled_jobs(Connection& connection) {
+  Array kinds;
+  for (const JobKind kind : {JobKind::calibration, JobKind::diagnosis}) {
+    kinds.add(std::string{recald::name_of(kind)});
+  }
+  return read_jobs(connection.run(
+      fmt::format("SELECT {} FROM site s CROSS JOIN unnest($1::text[]) k (kind) "
+                  "CROSS JOIN LATERAL (SELECT * FROM job n WHERE n.site = s.number AND "
+                  "n.kind = k.kind ORDER BY n.number DESC LIMIT 1) j WHERE s.retired IS NULL AND "
+                  "j.state IN ('failed', 'set_aside') ORDER BY s.id, j.kind",
+                  kColumns),
+      {kinds.parameter()}));
+}
+
 Result<std::map<FleetJobState, std::int64_t>> job_counts(Connection& connection) {
   const auto rows = connection.run("SELECT state, count(*) FROM job GROUP BY state");
   if (!rows) return tl::unexpected(rows.error());
@@ -379,15 +394,18 @@ Result<std::map<FleetJobState, std::int64_t>> job_counts(Connection& connection)
   return counts;
 }
 
-Result<std::vector<FleetResultRow>> newest_results(Connection& connection, JobKind kind) {
+Result<std::vector<FleetResultRow>> newest_results(Connection& connection, JobKind kind,
+                                                   const std::string& site) {
+  // A gateway's summary is its whole document, which no list needs.
   const auto rows = connection.run(
-      "SELECT DISTINCT ON (s.id) s.id, r.month, r.job IS NULL, extract(epoch FROM r.at)::bigint, "
-      "r.accepted, r.named, r.message, r.summary, coalesce(j.input_sha256, ''), r.sha256, "
+      "SELECT s.id, r.month, r.job IS NULL, extract(epoch FROM r.at)::bigint, r.accepted, r.named, "
+      "r.message, CASE WHEN r.job IS NULL THEN '' ELSE r.summary END, "
+      "coalesce((SELECT input_sha256 FROM job WHERE number = r.job), ''), r.sha256, "
       "(SELECT string_agg(name, chr(10) ORDER BY name) FROM result_file WHERE result = r.number) "
-      "FROM result r JOIN site s ON s.number = r.site LEFT JOIN job j ON j.number = r.job "
-      "WHERE r.kind = $1 AND s.retired IS NULL ORDER BY s.id, r.job IS NULL, r.month DESC, "
-      "r.number DESC",
-      {std::string{recald::name_of(kind)}});
+      "FROM site s CROSS JOIN LATERAL (SELECT * FROM result n WHERE n.site = s.number AND "
+      "n.kind = $1 ORDER BY n.job IS NULL, n.month DESC, n.number DESC LIMIT 1) r "
+      "WHERE s.retired IS NULL AND ($2 = '' OR s.id = $2) ORDER BY s.id",
+      {std::string{recald::name_of(kind)}, site});
   if (!rows) return tl::unexpected(rows.error());
   std::vector<FleetResultRow> found;
   for (int i = 0; i < rows->size(); ++i) {
@@ -416,7 +434,7 @@ Result<std::string> result_file(Connection& connection, const std::string& site,
                                 metering::Month month, const std::string& name) {
   const auto rows = connection.run(
       "SELECT f.bytes FROM result r JOIN site s ON s.number = r.site "
-      "JOIN result_file n ON n.result = r.number JOIN file f ON f.sha256 = n.sha256 "
+      "JOIN result_file n ON n.result = r.number JOIN whole_file f ON f.sha256 = n.sha256 "
       "WHERE s.id = $1 AND r.kind = $2 AND r.month = $3 AND n.name = $4 "
       "ORDER BY r.number DESC LIMIT 1",
       {site, std::string{recald::name_of(kind)}, metering::to_string(month), name});

@@ -110,6 +110,9 @@ struct RerunWhat {
 /// For lists: newest first. @param site  Empty: of all.
 [[nodiscard]] Result<std::vector<FleetJob>> jobs(postgres::Connection& connection,
                                                  const std::string& site, int limit);
+/// What nobody has mended: the newest job of its site and kind, and it failed or was set aside. By
+/// site and kind.
+[[nodiscard]] Result<std::vector<FleetJob>> troubled_jobs(postgres::Connection& connection);
 /// How many there are in each state.
 [[nodiscard]] Result<std::map<FleetJobState, std::int64_t>> job_counts(
     postgres::Connection& connection);
@@ -124,14 +127,16 @@ struct FleetResultRow {
   bool accepted = false;
   bool named = false;  ///< Of a worker's.
   std::string message;
-  std::string summary;
+  std::string summary;       ///< Of a worker's.
   std::string input_sha256;  ///< Of a worker's job.
   std::string sha256;        ///< Of the files.
   std::vector<std::string> files;
 };
 /// The newest of a kind of each site, by site; one that a gateway sent where no job has made one.
+/// @param site  Empty: of all.
 [[nodiscard]] Result<std::vector<FleetResultRow>> newest_results(postgres::Connection& connection,
-                                                                 JobKind kind);
+                                                                 JobKind kind,
+                                                                 const std::string& site = {});
 /// @return not_found.
 [[nodiscard]] Result<std::string> result_file(postgres::Connection& connection,
                                               const std::string& site, JobKind kind,

@@ -30,7 +30,15 @@ CREATE TABLE audit (
   text text NOT NULL);
 CREATE TABLE file (
   sha256 text COLLATE "C" PRIMARY KEY,
-  bytes bytea NOT NULL);
+  bytes bytea);  -- absent: in parts
+CREATE TABLE file_part (
+  sha256 text COLLATE "C" NOT NULL REFERENCES file,  -- of the whole
+  place int NOT NULL,
+  part text COLLATE "C" NOT NULL REFERENCES file,
+  PRIMARY KEY (sha256, place));
+CREATE VIEW whole_file AS SELECT f.sha256, coalesce(f.bytes,
+  (SELECT string_agg(p.bytes, '' ORDER BY q.place) FROM file_part q JOIN file p ON p.sha256 = q.part
+  WHERE q.sha256 = f.sha256)) AS bytes FROM file f;
 CREATE TABLE site (
   number int GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
   id text COLLATE "C" NOT NULL UNIQUE,
@@ -129,6 +137,7 @@ CREATE INDEX job_waiting ON job (asked, number) WHERE state = 'waiting';
 CREATE INDEX job_unfinished ON job (site, month, until_seq, number)
   WHERE state IN ('waiting', 'running');
 CREATE INDEX job_order ON job (site, month, until_seq, number);
+CREATE INDEX job_newest ON job (site, kind, number);
 CREATE TABLE result (
   number bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
   site int NOT NULL REFERENCES site,
@@ -141,7 +150,7 @@ CREATE TABLE result (
   message text NOT NULL,
   summary text NOT NULL,
   sha256 text NOT NULL);
-CREATE INDEX result_newest ON result (site, kind, month, number);
+CREATE INDEX result_newest ON result (site, kind, (job IS NULL), month DESC, number DESC);
 CREATE TABLE result_file (
   result bigint NOT NULL REFERENCES result,
   name text COLLATE "C" NOT NULL,
@@ -185,7 +194,8 @@ constexpr auto kRoles = std::to_array<Role>({
      "GRANT EXECUTE ON FUNCTION recald_make_partition TO recald_ingest"},
     {"recald_worker",
      "GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO recald_worker;"
-     "GRANT INSERT ON job, result, result_file, site_state, file, audit TO recald_worker;"
+     "GRANT INSERT ON job, result, result_file, site_state, file, file_part, audit TO "
+     "recald_worker;"
      "GRANT UPDATE ON job TO recald_worker;"
      "GRANT DELETE ON site_state TO recald_worker"},
     {"recald_read", "GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO recald_read"},

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "adapters/record/files.hpp"
 #include "adapters/record/values.hpp"
 
 namespace recald::record {
@@ -173,7 +174,7 @@ Result<SiteDescription> site_of_version(postgres::Connection& connection, const 
   if (!read) return read;
   const auto files = connection.run(
       "SELECT n.name, f.bytes FROM site s JOIN site_file n ON n.site = s.number "
-      "JOIN file f ON f.sha256 = n.sha256 WHERE s.id = $1 AND n.number = $2",
+      "JOIN whole_file f ON f.sha256 = n.sha256 WHERE s.id = $1 AND n.number = $2",
       {site, integer(version)});
   if (!files) return tl::unexpected(files.error());
   read->files = named_bytes(*files);

@@ -1,7 +1,6 @@
 /// Values of the record's columns.
 #pragma once
 
-#include <map>
 #include <string>
 #include <string_view>
 
@@ -29,16 +28,6 @@ namespace recald::record {
 /// @return malformed: the record was written by somebody else.
 [[nodiscard]] Result<JobKind> parse_job_kind(std::string_view name);
 
-/// SHA-256 of names and bytes, in order of the names.
-[[nodiscard]] std::string sha256_of(const std::map<std::string, std::string>& files);
 [[nodiscard]] std::string sha256_of(std::string_view bytes);
-
-/// Stores bytes under their SHA-256, once.
-/// @return by name, the SHA-256 of each
-[[nodiscard]] Result<std::map<std::string, std::string>> put_files(
-    postgres::Connection& connection, const std::map<std::string, std::string>& files);
-
-/// Names and bytes that a statement gives as its first two columns.
-[[nodiscard]] std::map<std::string, std::string> named_bytes(const postgres::Rows& rows);
 
 }  // namespace recald::record

@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Pair;
 using ::testing::UnorderedElementsAre;
 
@@ -320,6 +321,23 @@ TEST_F(Record, AJobThatCannotSucceedFailsAtOnce) {
   const auto found = record::jobs(*connection_, "tower", 2);
   EXPECT_EQ(found->at(1).state, FleetJobState::failed);
   EXPECT_EQ(found->at(1).reason, "not enough months");
+}
+
+TEST_F(Record, TroubleIsThatOfTheNewestJobOfAKind) {
+  Jobs jobs{*connection_};
+  jobs.close("tower", {3, 4});
+  ASSERT_TRUE(fail(*connection_, *jobs.lease(), "there are 3 months").value());
+  // The next one waits, and may go well.
+  EXPECT_THAT(*troubled_jobs(*connection_), IsEmpty());
+  ASSERT_TRUE(fail(*connection_, *jobs.lease(), "there are 4 months").value());
+  const auto troubled = troubled_jobs(*connection_);
+  ASSERT_TRUE(troubled) << troubled.error().message;
+  ASSERT_EQ(troubled->size(), 1u);
+  EXPECT_EQ(troubled->at(0).site, "tower");
+  EXPECT_EQ(troubled->at(0).reason, "there are 4 months");
+  jobs.close("tower", {5});
+  ASSERT_TRUE(finish(*connection_, *jobs.lease(), result_of("may")).value());
+  EXPECT_THAT(*troubled_jobs(*connection_), IsEmpty());
 }
 
 TEST_F(Record, AJobThatIsGivenBackWaitsLongerEachTimeAndIsSetAside) {
