@@ -64,16 +64,6 @@ std::string job_line(const record::FleetJob& job) {
                      job.reason.empty() ? "" : ": " + job.reason);
 }
 
-/// Those that a person should look at.
-std::vector<record::FleetJob> troubled(const std::vector<record::FleetJob>& jobs) {
-  std::vector<record::FleetJob> list;
-  std::ranges::copy_if(jobs, std::back_inserter(list), [](const record::FleetJob& job) {
-    return job.state == record::FleetJobState::failed ||
-           job.state == record::FleetJobState::set_aside;
-  });
-  return list;
-}
-
 }  // namespace
 
 int run_fleet_init(const FleetArguments& arguments, const Console& console) {
@@ -149,14 +139,12 @@ int run_fleet_remove(const FleetAddArguments& arguments, const Console& console)
 int run_fleet_status(const FleetArguments& arguments, const Console& console) {
   auto record = open_fleet(arguments.fleet, console);
   if (!record) return record.error();
-  constexpr int kJobs = 10'000;
   const auto sites = record::sites(**record);
   if (!sites) return console.fail(sites.error());
   const auto counts = record::job_counts(**record);
   if (!counts) return console.fail(counts.error());
-  const auto jobs = record::jobs(**record, "", kJobs);
-  if (!jobs) return console.fail(jobs.error());
-  const auto bad = troubled(*jobs);
+  const auto troubled = record::troubled_jobs(**record);
+  if (!troubled) return console.fail(troubled.error());
   if (arguments.json) {
     Json json = {{"sites", Json::array()}, {"jobs", Json::object()}, {"troubled", Json::array()}};
     for (const record::RecordedSite& one : *sites) {
@@ -166,7 +154,7 @@ int run_fleet_status(const FleetArguments& arguments, const Console& console) {
                                {"newest", time_json(one.newest)}});
     }
     for (const auto& [state, count] : *counts) json["jobs"][std::string{name_of(state)}] = count;
-    for (const record::FleetJob& job : bad) json["troubled"].push_back(fleet_job_json(job));
+    for (const record::FleetJob& job : *troubled) json["troubled"].push_back(fleet_job_json(job));
     console.out << json.dump(2) << "\n";
     return kSuccess;
   }
@@ -181,7 +169,7 @@ int run_fleet_status(const FleetArguments& arguments, const Console& console) {
   }
   console.out << fmt::format("jobs: {}\n",
                              words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", ")));
-  for (const record::FleetJob& job : bad) console.out << "  " << job_line(job);
+  for (const record::FleetJob& job : *troubled) console.out << "  " << job_line(job);
   return kSuccess;
 }
 
@@ -242,6 +230,14 @@ int run_fleet_rerun(const FleetRerunArguments& arguments, const Console& console
   }
   auto record = open_fleet(arguments.fleet, console);
   if (!record) return record.error();
+  const auto known = record::sites(**record);
+  if (!known) return console.fail(known.error());
+  for (const std::string& id : arguments.sites) {
+    const auto is_it = [&](const record::RecordedSite& one) { return one.site.id == id; };
+    if (std::ranges::none_of(*known, is_it)) {
+      return console.fail(fmt::format("the fleet has no site '{}'", id));
+    }
+  }
   const auto jobs = record::would_rerun(**record, what);
   if (!jobs) return console.fail(jobs.error());
   for (const record::FleetJob& job : *jobs) console.out << job_line(job);

@@ -1,14 +1,17 @@
 #include "daemon/fleet/serve/fleet_pages.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
+#include "adapters/record/schema.hpp"
 #include "adapters/report/format.hpp"
 #include "adapters/report/html.hpp"
 #include "daemon/fleet/serve/job_json.hpp"
@@ -35,7 +38,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kRowsShown = 500;
 constexpr int kJobsShown = 100;
 constexpr int kAuditShown = 200;
-constexpr std::array<std::string_view, 4> kStates{"alarm", "named", "silent", "trouble"};
+constexpr std::array<std::string_view, 6> kStates{"alarm", "named", "silent",
+                                                  "late",  "ahead", "trouble"};
 
 Response page(const FleetServed& served, const std::string& title, const Html& main) {
   Html html;
@@ -90,7 +94,7 @@ Checked<PortfolioFilter> filter_of(const Request& request) {
   if (!filter.state.empty() && std::ranges::find(kStates, filter.state) == kStates.end()) {
     return refusal(
         400, "invalid",
-        fmt::format("'state' is '{}'; write alarm, named, silent or trouble", filter.state),
+        fmt::format("'state' is '{}'; write one of {}", filter.state, fmt::join(kStates, ", ")),
         "state");
   }
   return filter;
@@ -139,11 +143,13 @@ std::string named_text(const PortfolioRow& row) {
 }
 
 Cell state_cell(const PortfolioRow& row) {
-  if (row.is_silent) return {"✖ silent", "bad"};
+  if (row.feed == Feed::silent) return {"✖ silent", "bad"};
+  if (row.feed == Feed::ahead) return {"✖ its clock is ahead", "bad"};
   if (row.troubled) {
     const bool is_aside = row.troubled->state == record::FleetJobState::set_aside;
     return {is_aside ? "✖ job set aside" : "▲ job failed", is_aside ? "bad" : "warn"};
   }
+  if (row.feed == Feed::late) return {"▲ no readings for a day", "warn"};
   if (!row.month) return {"waits for its first month", "muted"};
   if (!row.is_accepted) return {"▲ not converged", "warn"};
   return {fmt::format("✔ {}", report::month_text(*row.month)), "good"};
@@ -216,37 +222,69 @@ void write_map(Html& html, const std::vector<const PortfolioRow*>& rows) {
   const double scale = (kWidth - 2.0 * kMargin) / span;
   const double height = 2.0 * kMargin + (north - south) * scale;
   html.markup(
-      fmt::format("<figure><svg class=\"chart\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" "
+      fmt::format("<figure><svg class=\"chart\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"group\" "
                   "aria-label=\"Where the sites are\">",
                   kWidth, height));
   for (const PortfolioRow* row : rows) {
     const record::SiteDescription& site = row->site.site;
     if (!site.latitude_deg || !site.longitude_deg) continue;
     const Cell state = state_cell(*row);
+    const std::string words = site.id + ": " + state.text;
     html.markup(
-        fmt::format("<a href=\"{}\"><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" class=\"{}\" "
+        fmt::format("<a href=\"{}\" aria-label=\"{}\"><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" "
+                    "class=\"{}\" "
                     "fill=\"currentColor\"><title>{}</title></circle></a>",
-                    report::escape(site_address(site.id)),
+                    report::escape(site_address(site.id)), report::escape(words),
                     kMargin + (*site.longitude_deg - west) * squeeze * scale,
                     kMargin + (north - *site.latitude_deg) * scale, row->urgency() > 0 ? 7 : 4,
-                    state.css_class, report::escape(site.id + ": " + state.text)));
+                    state.css_class, report::escape(words)));
   }
   html.markup("</svg></figure>");
 }
 
-/// "1,000 sites: 3 silent, 2 with a job that failed, 12 with changes, 4 with a likely cause."
-std::string summary_text(const Portfolio& portfolio) {
-  int silent = 0, troubled = 0, changed = 0, named = 0;
-  for (const PortfolioRow& row : portfolio.rows) {
-    silent += row.is_silent ? 1 : 0;
-    troubled += row.troubled ? 1 : 0;
-    changed += row.alarms.empty() ? 0 : 1;
-    named += row.named.empty() ? 0 : 1;
+/// "1,000 sites: 3 silent, 0 with a wrong clock, 2 with a job that failed, 12 with changes, 4 with
+/// a likely cause."
+std::string summary_text(const std::vector<const PortfolioRow*>& rows) {
+  int silent = 0, ahead = 0, troubled = 0, changed = 0, named = 0;
+  for (const PortfolioRow* row : rows) {
+    silent += row->feed == Feed::silent ? 1 : 0;
+    ahead += row->feed == Feed::ahead ? 1 : 0;
+    troubled += row->troubled ? 1 : 0;
+    changed += row->alarms.empty() ? 0 : 1;
+    named += row->named.empty() ? 0 : 1;
   }
   return fmt::format(
-      "{} sites: {} silent, {} with a job that failed, {} with changes, {} with a likely cause.",
-      report::count_text(static_cast<double>(portfolio.rows.size())), silent, troubled, changed,
+      "{} sites: {} silent, {} with a wrong clock, {} with a job that failed, {} with changes, {} "
+      "with a likely cause.",
+      report::count_text(static_cast<double>(rows.size())), silent, ahead, troubled, changed,
       named);
+}
+
+/// "Metered beyond what the models explain: 12,300 EUR a month; the likely causes: 4,100 EUR." By
+/// currency, for what cannot be added.
+void write_money(Html& html, const std::vector<const PortfolioRow*>& rows) {
+  struct Sums {
+    double gap = 0.0, named = 0.0;
+  };
+  std::map<std::string, Sums> by_currency;
+  for (const PortfolioRow* row : rows) {
+    Sums sums{.gap = row->gap_money_month.value_or(0.0)};
+    bool is_known = row->gap_money_month.has_value();
+    for (const NamedEffect& one : row->named) {
+      sums.named += one.money_month.value_or(0.0);
+      is_known = is_known || one.money_month;
+    }
+    if (!is_known) continue;
+    Sums& all = by_currency[row->site.site.currency];
+    all.gap += sums.gap;
+    all.named += sums.named;
+  }
+  for (const auto& [currency, sums] : by_currency) {
+    html.element("p",
+                 fmt::format("Metered beyond what the models explain: {} a month; the likely "
+                             "causes: {} a month.",
+                             money_text(sums.gap, currency), money_text(sums.named, currency)));
+  }
 }
 
 Response sites_page(const FleetServed& served, const Request& request) {
@@ -259,8 +297,10 @@ Response sites_page(const FleetServed& served, const Request& request) {
     if (fits(row, *filter)) rows.push_back(&row);
   }
   Html html;
-  html.element("h1", "Sites").element("p", summary_text(*portfolio));
+  html.element("h1", "Sites");
   write_filter(html, *portfolio, *filter, "/");
+  html.element("p", summary_text(rows));
+  write_money(html, rows);
   const std::size_t found = rows.size();
   write_map(html, rows);
   if (rows.size() > kRowsShown) {
@@ -282,12 +322,10 @@ Response sites_page(const FleetServed& served, const Request& request) {
 
 // --- one site
 
-void write_results(Html& html, const PortfolioRow& row,
-                   const std::vector<record::FleetResultRow>& results) {
+void write_results(Html& html, const std::vector<record::FleetResultRow>& results) {
   Table table{"Newest results"};
   table.with_labels().columns({"Result", "Month", "By", "What it says", "Pages"});
   for (const record::FleetResultRow& one : results) {
-    if (one.site != row.site.site.id) continue;
     for (const std::string& file : one.files) {
       if (!file.ends_with(".html")) continue;
       table.row({{std::string{name_of(one.kind)}},
@@ -339,7 +377,7 @@ Response site_page(const FleetServed& served, const std::string& id) {
   }
   std::vector<record::FleetResultRow> results;
   for (const JobKind kind : {JobKind::calibration, JobKind::diagnosis}) {
-    auto newest = record::newest_results(served.record, kind);
+    auto newest = record::newest_results(served.record, kind, id);
     if (!newest) return unavailable(newest.error());
     std::ranges::move(*newest, std::back_inserter(results));
   }
@@ -359,7 +397,7 @@ Response site_page(const FleetServed& served, const std::string& id) {
                                   report::probability_text(named.probability),
                                   money_text(named.money_month, row->site.site.currency)));
   }
-  write_results(html, *row, results);
+  write_results(html, results);
   write_jobs(html, "Jobs, newest first", *jobs);
   return page(served, id, html);
 }
@@ -508,7 +546,7 @@ Json row_json(const PortfolioRow& row) {
           {"use", row.site.site.use},
           {"climate", row.site.site.climate},
           {"currency", row.site.site.currency},
-          {"silent", row.is_silent},
+          {"feed", name_of(row.feed)},
           {"month", row.month ? Json(metering::to_string(*row.month)) : Json(nullptr)},
           {"accepted", row.is_accepted},
           {"worst_meter", row.worst_meter},
@@ -567,8 +605,9 @@ Response metrics(const FleetServed& served) {
 }
 
 Response readiness(const FleetServed& served) {
-  const auto counts = record::job_counts(served.record);
-  if (!counts) return unavailable(counts.error());
+  if (auto checked = record::check_schema(served.record); !checked) {
+    return unavailable(checked.error());
+  }
   return http::json_response(R"({"ready":true})");
 }
 

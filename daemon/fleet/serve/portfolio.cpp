@@ -1,6 +1,7 @@
 #include "daemon/fleet/serve/portfolio.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,10 +13,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr auto kSilentAfter = std::chrono::hours{24};
+constexpr auto kLateAfter = std::chrono::hours{24};
+constexpr auto kAheadBy = std::chrono::hours{1};  // of an interval that has begun
+constexpr std::array<std::string_view, 4> kFeeds{"current", "silent", "late", "ahead"};
 constexpr double kDaysPerYear = 365.25;
 constexpr double kSureProbability = 0.8;
 constexpr std::size_t kQuartilesFrom = 3;
-constexpr int kJobsLookedAt = 10'000;
+
+Feed feed_of(const record::RecordedSite& site, metering::Instant now) {
+  if (!site.heard || now - *site.heard > kSilentAfter) return Feed::silent;
+  if (!site.newest) return Feed::current;
+  if (*site.newest - now > kAheadBy) return Feed::ahead;
+  return now - *site.newest > kLateAfter ? Feed::late : Feed::current;
+}
 
 std::optional<double> number_of(const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -115,10 +125,13 @@ std::vector<PortfolioGroup> groups_of(const std::vector<PortfolioRow>& rows) {
 
 }  // namespace
 
+std::string_view name_of(Feed feed) { return kFeeds.at(static_cast<std::size_t>(feed)); }
+
 int PortfolioRow::urgency() const {
+  const bool has_no_readings = feed == Feed::silent || feed == Feed::ahead;
   const bool has_sure_name = !named.empty() && named.front().probability >= kSureProbability;
-  return (is_silent ? 8 : 0) + (troubled ? 4 : 0) + (has_sure_name ? 2 : 0) +
-         (alarms.empty() ? 0 : 1);
+  return (has_no_readings ? 8 : 0) + (troubled || feed == Feed::late ? 4 : 0) +
+         (has_sure_name ? 2 : 0) + (alarms.empty() ? 0 : 1);
 }
 
 bool fits(const PortfolioRow& row, const PortfolioFilter& filter) {
@@ -129,7 +142,9 @@ bool fits(const PortfolioRow& row, const PortfolioFilter& filter) {
   if (!is_same(filter.climate, row.site.site.climate)) return false;
   if (filter.state == "alarm") return !row.alarms.empty();
   if (filter.state == "named") return !row.named.empty();
-  if (filter.state == "silent") return row.is_silent;
+  if (const auto feed = std::ranges::find(kFeeds, filter.state); feed != kFeeds.end()) {
+    return name_of(row.feed) == *feed;
+  }
   if (filter.state == "trouble") return row.troubled.has_value();
   return true;
 }
@@ -137,13 +152,13 @@ bool fits(const PortfolioRow& row, const PortfolioFilter& filter) {
 Portfolio portfolio_of(std::vector<record::RecordedSite> sites,
                        const std::vector<record::FleetResultRow>& calibrations,
                        const std::vector<record::FleetResultRow>& diagnoses,
-                       const std::vector<record::FleetJob>& jobs, metering::Instant now) {
+                       const std::vector<record::FleetJob>& troubled, metering::Instant now) {
   Portfolio portfolio;
   std::map<std::string, std::size_t> by_id;
   for (record::RecordedSite& site : sites) {
     by_id[site.site.id] = portfolio.rows.size();
-    const bool is_silent = !site.heard || now - *site.heard > kSilentAfter;
-    portfolio.rows.push_back({.site = std::move(site), .is_silent = is_silent});
+    const Feed feed = feed_of(site, now);
+    portfolio.rows.push_back({.site = std::move(site), .feed = feed});
   }
   const auto row_of = [&](const std::string& id) -> PortfolioRow* {
     const auto found = by_id.find(id);
@@ -155,14 +170,10 @@ Portfolio portfolio_of(std::vector<record::RecordedSite> sites,
   for (const record::FleetResultRow& one : diagnoses) {
     if (PortfolioRow* const row = row_of(one.site)) add_diagnosis(one, *row);
   }
-  std::map<std::pair<std::string, JobKind>, bool> seen;
-  for (const record::FleetJob& job : jobs) {
+  for (const record::FleetJob& job : troubled) {
     PortfolioRow* const row = row_of(job.site);
-    // What was mended since is no trouble any more.
-    if (row == nullptr || std::exchange(seen[{job.site, job.kind}], true)) continue;
-    const bool is_bad =
-        job.state == record::FleetJobState::failed || job.state == record::FleetJobState::set_aside;
-    if (is_bad && !row->troubled) row->troubled = job;
+    if (row == nullptr) continue;
+    if (!row->troubled || row->troubled->number < job.number) row->troubled = job;
   }
   std::ranges::stable_sort(portfolio.rows, [](const PortfolioRow& a, const PortfolioRow& b) {
     if (a.urgency() != b.urgency()) return a.urgency() > b.urgency();
@@ -179,9 +190,9 @@ Result<Portfolio> read_portfolio(postgres::Connection& record, metering::Instant
   if (!calibrations) return tl::unexpected(calibrations.error());
   const auto diagnoses = record::newest_results(record, JobKind::diagnosis);
   if (!diagnoses) return tl::unexpected(diagnoses.error());
-  const auto jobs = record::jobs(record, "", kJobsLookedAt);
-  if (!jobs) return tl::unexpected(jobs.error());
-  return portfolio_of(std::move(*sites), *calibrations, *diagnoses, *jobs, now);
+  const auto troubled = record::troubled_jobs(record);
+  if (!troubled) return tl::unexpected(troubled.error());
+  return portfolio_of(std::move(*sites), *calibrations, *diagnoses, *troubled, now);
 }
 
 }  // namespace recald::daemon

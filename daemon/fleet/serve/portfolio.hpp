@@ -21,10 +21,20 @@ struct NamedEffect {
   std::optional<double> money_month;  ///< In the site's currency.
 };
 
+/// What reaches the record from a site's gateway.
+enum class Feed : std::uint8_t {
+  current,
+  silent,  ///< Nothing for a day.
+  late,    ///< It is heard, but its newest reading is over a day old: meters, a clock, or a long
+           ///< queue.
+  ahead,   ///< Its newest reading is from the future: its clock is wrong.
+};
+[[nodiscard]] std::string_view name_of(Feed feed);
+
 /// One building.
 struct PortfolioRow {
   record::RecordedSite site;
-  bool is_silent = false;                ///< Its gateway has sent nothing for a day.
+  Feed feed = Feed::current;
   std::optional<metering::Month> month;  ///< Of the newest calibration; absent: there is none.
   bool is_accepted = false;              ///< That calibration passed its checks.
   /// The output that the calibrated model explains least, by CV(RMSE) of the fitted months.
@@ -64,16 +74,16 @@ struct Portfolio {
 /// Which sites somebody wants to see; empty: all.
 struct PortfolioFilter {
   std::string use, climate;
-  std::string state;  ///< "alarm", "named", "silent", "trouble"
+  std::string state;  ///< "alarm", "named", "silent", "late", "ahead", "trouble"
 };
 [[nodiscard]] bool fits(const PortfolioRow& row, const PortfolioFilter& filter);
 
 /// Puts together what the record has.
-/// @param jobs  Newest first.
+/// @param troubled  As record::troubled_jobs.
 [[nodiscard]] Portfolio portfolio_of(std::vector<record::RecordedSite> sites,
                                      const std::vector<record::FleetResultRow>& calibrations,
                                      const std::vector<record::FleetResultRow>& diagnoses,
-                                     const std::vector<record::FleetJob>& jobs,
+                                     const std::vector<record::FleetJob>& troubled,
                                      metering::Instant now);
 
 /// The same, read. @return io_failed: the record is away.
