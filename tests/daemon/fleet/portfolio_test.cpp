@@ -69,16 +69,32 @@ TEST(Portfolio, PutsWhatIsUrgentFirstAndThenWhatCostsMost) {
   EXPECT_EQ(portfolio.rows[2].alarms, (std::vector<std::string>{"Steam rose by 8 %."}));
 }
 
-TEST(Portfolio, TroubleIsThatOfTheNewestJobOfAKind) {
-  const auto portfolio = portfolio_of(
-      {site("mended"), site("poison")}, {}, {},
-      {job("mended", record::FleetJobState::done), job("mended", record::FleetJobState::set_aside),
-       job("poison", record::FleetJobState::set_aside)},
-      kNow);
+TEST(Portfolio, WhoseJobFailedComesFirst) {
+  const auto portfolio = portfolio_of({site("well"), site("poison")}, {}, {},
+                                      {job("poison", record::FleetJobState::set_aside)}, kNow);
   ASSERT_EQ(portfolio.rows.front().site.site.id, "poison");
   ASSERT_TRUE(portfolio.rows.front().troubled);
   EXPECT_EQ(portfolio.rows.front().troubled->reason, "its process was killed by signal 9");
   EXPECT_FALSE(portfolio.rows.back().troubled);
+}
+
+TEST(Portfolio, SaysWhatReachesTheRecord) {
+  const auto feed = [](std::optional<hours> since_heard, std::optional<hours> age) {
+    record::RecordedSite one = site("tower");
+    one.heard = since_heard ? std::optional{kNow - *since_heard} : std::nullopt;
+    one.newest = age ? std::optional{kNow - *age} : std::nullopt;
+    return portfolio_of({one}, {}, {}, {}, kNow).rows.front().feed;
+  };
+  EXPECT_EQ(feed(hours{1}, hours{1}), Feed::current);
+  EXPECT_EQ(feed(hours{1}, {}), Feed::current);  // it has sent no interval yet
+  EXPECT_EQ(feed(hours{1}, hours{0}), Feed::current);
+  EXPECT_EQ(feed({}, {}), Feed::silent);
+  EXPECT_EQ(feed(hours{25}, hours{1}), Feed::silent);
+  EXPECT_EQ(feed(hours{1}, hours{25}), Feed::late);
+  EXPECT_EQ(feed(hours{1}, hours{-2}), Feed::ahead);
+  PortfolioRow row{.site = site("tower"), .feed = Feed::ahead};
+  EXPECT_TRUE(fits(row, {.state = "ahead"}));
+  EXPECT_FALSE(fits(row, {.state = "silent"}));
 }
 
 TEST(Portfolio, ComparesSitesOfAUseAndClimateByQuartiles) {

@@ -1,6 +1,8 @@
 // Opens pages in headless Chromium and looks for what a reader would trip over.
 //
-//   node check_pages.mjs --modules NODE_MODULES [--pictures FOLDER] PAGE.html…
+//   node check_pages.mjs --modules NODE_MODULES [--pictures FOLDER] PAGE…
+//
+// A page is a file, PAGE.html, or an address, http://….
 //
 // At 390, 768 and 1440 pixels, light, dark and on paper: axe-core's rules; at each width that
 // nothing makes the whole page scroll sideways and that no label in a figure is cut or lies over
@@ -71,9 +73,12 @@ async function checkLayout(tab, page, width) {
   }
 }
 
+const addressOf = (page) => (page.startsWith("http:") ? page : pathToFileURL(resolve(page)).href);
+const nameOf = (page) => (page.startsWith("http:") ? page : basename(page, ".html"));
+
 async function checkPage(tab, file) {
-  const page = basename(file, ".html");
-  const url = pathToFileURL(resolve(file)).href;
+  const page = nameOf(file);
+  const url = addressOf(file);
   for (const width of widths) {
     await tab.resize(width);
     await tab.show("light");
@@ -93,12 +98,12 @@ async function checkPage(tab, file) {
 
 /** Time stands still, so that nothing is drawn but what printing itself draws. */
 async function checkPrintingAtOnce(tab, file) {
-  const page = basename(file, ".html");
+  const page = nameOf(file);
   const { identifier } = await tab.send("Page.addScriptToEvaluateOnNewDocument", {
     source: "window.setTimeout = () => 0;",
   });
   await tab.show("light");
-  await tab.open(pathToFileURL(resolve(file)).href);
+  await tab.open(addressOf(file));
   await tab.send("Page.printToPDF", { printBackground: true });
   const blank = await tab.value(
     `[...document.querySelectorAll("[data-figure]")].filter((place) => !place.querySelector("svg")).length`,

@@ -1,0 +1,119 @@
+/// A gateway, a worker, a broker and a database, all real, with a network between them that is cut:
+/// whatever passes when, everything is in the record at the end, once.
+#include <gmock/gmock.h>
+
+#include <memory>
+
+#include "tests/adapters/record/record_fixture.hpp"
+#include "tests/daemon/serving_daemon.hpp"
+#include "tests/support/dropping_proxy.hpp"
+#include "tests/support/mosquitto.hpp"
+
+namespace recald::daemon::fleet_partition_test {
+namespace {
+
+using recald::testing::BackgroundProcess;
+using recald::testing::DroppingProxy;
+using recald::testing::eventually;
+using recald::testing::Mosquitto;
+using recald::testing::readings_json;
+using recald::testing::ServingDaemon;
+using recald::testing::TemporaryFolder;
+using recald::testing::write_text;
+using std::chrono::seconds;
+using ::testing::HasSubstr;
+
+constexpr seconds kQuarter{900};
+constexpr auto kCut = std::chrono::seconds{3};
+
+class FleetPartition : public record::Record {
+ protected:
+  void SetUp() override {
+    if (!Mosquitto::can_run()) GTEST_SKIP() << "mosquitto of Debian is not installed";
+    Record::SetUp();
+    if (IsSkipped()) return;
+    broker_.start();
+    gateway_to_broker_ = std::make_unique<DroppingProxy>(broker_.port());
+    worker_to_broker_ = std::make_unique<DroppingProxy>(broker_.port());
+    worker_to_database_ = std::make_unique<DroppingProxy>(server_->port());
+    const std::string database = url_.substr(url_.rfind('/') + 1);
+    write_text(folder_ / "fleet.toml",
+               "[record]\nurl = \"" +
+                   recald::testing::PostgresServer::url_of(worker_to_database_->port(), database) +
+                   "\"\n[mqtt]\nurl = \"" + address_of(*worker_to_broker_) +
+                   "\"\n[worker]\njobs = 1\n");
+    write_text(folder_ / "site.toml", R"([site]
+id = "tower"
+timezone = "Europe/Berlin"
+[http]
+listen = "127.0.0.1:0"
+[fleet]
+url = ")" + address_of(*gateway_to_broker_) +
+                                          R"("
+[[meter]]
+id = "main"
+source = "http"
+utility = "electricity"
+)");
+    gateway_ = std::make_unique<ServingDaemon>(RECALD_PROGRAM, folder_.path());
+    worker_ = std::make_unique<BackgroundProcess>(
+        std::vector<std::string>{RECALD_PROGRAM, "worker", (folder_ / "fleet.toml").string()},
+        folder_ / "worker.txt");
+  }
+  static std::string address_of(const DroppingProxy& proxy) {
+    return "mqtt://127.0.0.1:" + std::to_string(proxy.port());
+  }
+
+  void push(int count) {
+    const auto answer = gateway_->post("/api/v1/readings",
+                                       readings_json(begin_ + pushed_ * kQuarter, kQuarter, count,
+                                                     [&](int i) { return pushed_ + i; }));
+    ASSERT_THAT(answer, HasSubstr("200 OK"));
+    pushed_ += count;
+  }
+  /// All that was pushed is in the record, each with its value.
+  [[nodiscard]] bool has_all() const {
+    const std::string sum = std::to_string(pushed_ * (pushed_ - 1) / 2);
+    const std::string all = std::to_string(pushed_) + "|" + sum + "\n";
+    return eventually([&] { return ask("SELECT count(*), sum(mean_kw) FROM interval") == all; });
+  }
+  [[nodiscard]] std::string words() const {
+    return ask("SELECT count(*), sum(mean_kw) FROM interval") + gateway_->said() +
+           recald::testing::read_text(folder_ / "worker.txt");
+  }
+
+  const metering::Instant begin_ =
+      std::chrono::floor<std::chrono::days>(
+          std::chrono::floor<seconds>(std::chrono::system_clock::now())) -
+      std::chrono::days{3};
+  int pushed_ = 0;
+  TemporaryFolder folder_;
+  Mosquitto broker_;
+  std::unique_ptr<DroppingProxy> gateway_to_broker_, worker_to_broker_, worker_to_database_;
+  std::unique_ptr<ServingDaemon> gateway_;
+  std::unique_ptr<BackgroundProcess> worker_;
+};
+
+TEST_F(FleetPartition, ANetworkThatIsCutAnywhereLosesAndRepeatsNothing) {
+  push(10);
+  ASSERT_TRUE(has_all()) << words();
+  for (const auto* const link : {&gateway_to_broker_, &worker_to_broker_, &worker_to_database_}) {
+    for (const auto mend : {&DroppingProxy::mend, &DroppingProxy::mend_and_reset}) {
+      (*link)->cut();
+      push(20);
+      std::this_thread::sleep_for(kCut);
+      push(10);
+      EXPECT_FALSE(ask("SELECT count(*) FROM interval") == std::to_string(pushed_) + "\n")
+          << "nothing was cut";
+      ((*link).get()->*mend)();
+      ASSERT_TRUE(has_all()) << words();
+    }
+  }
+  EXPECT_EQ(worker_->end(SIGTERM), 128 + SIGTERM) << words();
+  EXPECT_EQ(gateway_->end(SIGTERM), 0) << words();
+  // Nothing came under another identity, as after a loss.
+  EXPECT_EQ(ask("SELECT count(*) FROM source WHERE outbox > 0"), "1\n");
+}
+
+}  // namespace
+}  // namespace recald::daemon::fleet_partition_test
