@@ -11,7 +11,8 @@ namespace recald {
   return "results of " + destination;
 }
 
-/// The number of the last entry of the store's past that the destination has had.
+/// The number of the last entry of the store's past that the destination has had; removed with its
+/// identity, so that the past is told again.
 [[nodiscard]] inline std::string history_cursor(const std::string& destination) {
   return "history of " + destination;
 }

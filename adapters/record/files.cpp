@@ -41,9 +41,9 @@ Result<void> put_parts(Connection& connection, const std::string& sum,
     if (!*known) {
       if (auto put = put_row(connection, part, postgres::bytes(parts[i])); !put) return put;
     }
-    const auto put = connection.run(
-        "INSERT INTO file_part VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
-        {sum, integer(static_cast<std::int64_t>(i)), part});
+    const auto put =
+        connection.run("INSERT INTO file_part VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
+                       {sum, integer(static_cast<std::int64_t>(i)), part});
     if (!put) return tl::unexpected(put.error());
   }
   return {};

@@ -1,7 +1,8 @@
 /// Files in the record: bytes under their SHA-256, once.
 ///
 /// A script that is part of many pages (a report draws its figures with one of half a megabyte) is
-/// stored once beside them: such a page is kept in parts, and the view `whole_file` puts it together.
+/// stored once beside them: such a page is kept in parts, and the view `whole_file` puts it
+/// together.
 #pragma once
 
 #include <map>

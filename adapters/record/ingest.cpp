@@ -47,7 +47,7 @@ class Taking {
       : connection_{connection}, site_id_{site}, batch_{batch}, now_{now} {}
 
   /// Why it stopped without an error of the record.
-  enum class End : std::uint8_t { taken, unknown_outbox, behind, partitions_missing };
+  enum class End : std::uint8_t { taken, behind, partitions_missing };
 
   [[nodiscard]] Result<End> run();
   /// Where the outbox's watermark is then.
@@ -56,6 +56,10 @@ class Taking {
  private:
   [[nodiscard]] Result<bool> lock();
   [[nodiscard]] bool is_behind() const;
+  /// Of the past only the events and results of before are not told.
+  [[nodiscard]] bool may_begin_late() const {
+    return batch_.outbox < 0 ? batch_.after.entries == 0 : has_history_;
+  }
   [[nodiscard]] Result<void> find_meters();
   [[nodiscard]] Result<void> put_intervals();
   [[nodiscard]] Result<void> put_months();
@@ -82,6 +86,7 @@ class Taking {
 
   std::int64_t site_ = 0;
   bool is_new_outbox_ = false;
+  bool has_history_ = false;  ///< All of the past of this outbox was told.
   bool has_partitions_ = true;
   Progress known_;                        ///< The watermark before.
   Progress until_;                        ///< The watermark after.
@@ -104,9 +109,12 @@ Result<bool> Taking::lock() {
       "ON CONFLICT (site, outbox) DO UPDATE SET outbox = excluded.outbox "
       "RETURNING site, entries, events, results, xmax = 0, (SELECT seq FROM s), "
       "(SELECT event_seq FROM s), "
-      "(SELECT coalesce(bool_and(to_regclass(p) IS NOT NULL), true) FROM unnest($7::text[]) p)",
+      "(SELECT coalesce(bool_and(to_regclass(p) IS NOT NULL), true) FROM unnest($7::text[]) p), "
+      "EXISTS (SELECT FROM source h WHERE h.site = source.site AND h.outbox = -$3::bigint AND "
+      "h.entries >= $8)",
       {site_id_, parameter(now_), integer(batch_.outbox), integer(batch_.after.entries),
-       integer(batch_.after.events), integer(batch_.after.results), partitions.parameter()});
+       integer(batch_.after.events), integer(batch_.after.results), partitions.parameter(),
+       integer(kHistoryTold)});
   if (!rows) return tl::unexpected(rows.error());
   if (rows->size() == 0) return false;
   site_ = rows->integer(0, 0);
@@ -117,6 +125,7 @@ Result<bool> Taking::lock() {
   seq_ = rows->integer(0, 5);
   event_seq_ = rows->integer(0, 6);
   has_partitions_ = rows->boolean(0, 7);
+  has_history_ = rows->boolean(0, 8);
   return true;
 }
 
@@ -129,9 +138,6 @@ Result<Taking::End> Taking::run() {
         fmt::format("the record has no site {}: register it with recald fleet add", site_id_));
   }
   const auto& [outbox, after, question, is_first, entries, events, results] = batch_;
-  if (is_new_outbox_ && entries.empty() && events.empty() && results.empty()) {
-    return End::unknown_outbox;
-  }
   if (is_behind()) {
     if (!is_new_outbox_) until_ = known_;
     return End::behind;
@@ -156,10 +162,11 @@ Result<Taking::End> Taking::run() {
 }
 
 /// The gateway has forgotten what this record had confirmed, or another that is lost: a backup was
-/// restored. Its next rows would hide that.
+/// restored. Its next rows would hide that. An outbox may begin after its first number only when
+/// the past before it was told.
 bool Taking::is_behind() const {
   const Progress& after = batch_.after;
-  if (is_new_outbox_) return !batch_.is_first && after != Progress{};
+  if (is_new_outbox_) return after != Progress{} && !(batch_.is_first && may_begin_late());
   return after.entries > known_.entries || after.events > known_.events ||
          after.results > known_.results;
 }
@@ -167,7 +174,8 @@ bool Taking::is_behind() const {
 Result<void> Taking::find_meters() {
   std::set<std::pair<std::string, std::int64_t>> wanted;
   for (const OutboxEntry& entry : batch_.entries) {
-    if (is_new(entry)) wanted.emplace(text_of(entry.meter), entry.interval.count());
+    const bool is_lost = std::holds_alternative<std::monostate>(entry.stored);
+    if (is_new(entry) && !is_lost) wanted.emplace(text_of(entry.meter), entry.interval.count());
   }
   if (wanted.empty()) return {};
   const auto known =
@@ -193,30 +201,37 @@ Result<void> Taking::find_meters() {
       {integer(site_), numbers.parameter(), ids.parameter(), intervals.parameter()}));
 }
 
+/// What says the same as the newest row of its interval is not stored again: the past may be told
+/// once more, or with it what the outbox has too.
 Result<void> Taking::put_intervals() {
-  Array starts, seqs, means, reasons, meters, validities, late;
-  bool has_any = false;
+  Array starts, seqs, means, reasons, meters, validities, late, again;
+  std::set<std::pair<std::int64_t, Instant>> seen;
   for (const OutboxEntry& entry : batch_.entries) {
     const auto* const interval = std::get_if<StoredInterval>(&entry.stored);
     if (interval == nullptr || !is_new(entry)) continue;
-    has_any = true;
     const metering::Reading& reading = interval->reading;
+    const std::int64_t meter = meter_of(entry);
     starts.add(seconds_of(reading.start));
     seqs.add(seq_of(entry.number));
     means.add(reading.mean_kW);
     reasons.add(static_cast<std::int64_t>(reading.reasons));
-    meters.add(meter_of(entry));
+    meters.add(meter);
     validities.add(static_cast<std::int64_t>(reading.validity));
     late.add(std::int64_t{reading.late});
+    again.add(std::int64_t{!seen.emplace(meter, reading.start).second});
   }
-  if (!has_any) return {};
+  if (seen.empty()) return {};
   return nothing_or_error(connection_.run(
       "INSERT INTO interval (t_start, seq, mean_kw, site, reasons, meter, validity, late) "
       "SELECT to_timestamp(t), s, mean, $1, r, m, v, l <> 0 FROM unnest($2::bigint[], "
-      "$3::bigint[], $4::float8[], $5::bigint[], $6::smallint[], $7::smallint[], $8::smallint[]) "
-      "AS u (t, s, mean, r, m, v, l)",
+      "$3::bigint[], $4::float8[], $5::bigint[], $6::smallint[], $7::smallint[], $8::smallint[], "
+      "$9::smallint[]) AS u (t, s, mean, r, m, v, l, again) WHERE again <> 0 OR NOT EXISTS ("
+      "SELECT FROM (SELECT * FROM interval i WHERE i.site = $1 AND i.meter = m AND "
+      "i.t_start = to_timestamp(t) ORDER BY i.seq DESC LIMIT 1) known WHERE "
+      "known.mean_kw IS NOT DISTINCT FROM mean AND known.reasons = r AND known.validity = v AND "
+      "known.late = (l <> 0))",
       {integer(site_), starts.parameter(), seqs.parameter(), means.parameter(), reasons.parameter(),
-       meters.parameter(), validities.parameter(), late.parameter()}));
+       meters.parameter(), validities.parameter(), late.parameter(), again.parameter()}));
 }
 
 Result<void> Taking::put_months() {
@@ -251,28 +266,31 @@ Result<void> Taking::put_months() {
 /// the one before it said. Each figure counts by itself: had it been the last of its batch, there
 /// would be the same jobs. A job is of the newest month that is complete by then, which is what it
 /// calculates, whichever month was corrected. A month of which no output can be used changes
-/// nothing, and months of the future are of a gateway whose clock is wrong.
+/// nothing. A month that has not ended anywhere in the world is of a gateway whose clock is wrong.
 Result<void> Taking::put_month_jobs() {
-  const std::chrono::year_month_day today{std::chrono::floor<std::chrono::days>(now_)};
   const auto rows = connection_.run(
       "WITH n AS (SELECT v.number, v.sha256, v.description->>'calibrate_from' AS first_month, "
-      "ARRAY(SELECT DISTINCT jsonb_array_elements_text(v.description->'outputs')) AS outputs "
+      "ARRAY(SELECT DISTINCT jsonb_array_elements_text(v.description->'outputs')) AS outputs, "
+      "to_char(now() AT TIME ZONE 'UTC' + interval '14 hours', 'YYYY-MM') AS this_month "
       "FROM site s JOIN site_version v ON v.site = s.number AND v.number = s.version "
       "WHERE s.number = $1) "
       "SELECT n.number, n.sha256, c.newest, m.seq, extract(epoch FROM m.closed_at)::bigint "
       "FROM n, month m JOIN meter o ON o.site = m.site AND o.number = m.meter, "
       "LATERAL (SELECT max(month) AS newest, bool_or(month = m.month) AS has_it FROM "
-      "(SELECT x.month FROM month x JOIN meter p ON p.site = x.site AND p.number = x.meter "
-      "WHERE x.site = m.site AND x.seq <= m.seq AND x.month <= $3 AND p.id = ANY(n.outputs) "
-      "GROUP BY x.month HAVING count(DISTINCT p.id) = cardinality(n.outputs) AND "
-      "bool_or((x.figure->>'usable')::boolean)) complete) c "
+      "(SELECT month FROM (SELECT DISTINCT ON (x.month, x.meter) x.month, p.id, x.figure "
+      "FROM month x JOIN meter p ON p.site = x.site AND p.number = x.meter "
+      "WHERE x.site = m.site AND x.seq <= m.seq AND x.month < n.this_month AND p.id = "
+      "ANY(n.outputs) "
+      "ORDER BY x.month, x.meter, x.seq DESC) latest GROUP BY month "
+      "HAVING count(DISTINCT id) = cardinality(n.outputs) AND "
+      "bool_or((figure->>'usable')::boolean)) complete) c "
       "WHERE m.site = $1 AND m.seq > $2 AND m.month >= n.first_month AND o.id = ANY(n.outputs) "
       "AND c.has_it AND NOT EXISTS (SELECT FROM month q WHERE "
       "q.site = m.site AND q.meter = m.meter AND q.month = m.month AND q.seq = (SELECT max(r.seq) "
       "FROM month r WHERE r.site = m.site AND r.meter = m.meter AND r.month = m.month AND "
       "r.seq < m.seq) AND q.figure - '{closed_at,revision}'::text[] = "
       "m.figure - '{closed_at,revision}'::text[]) ORDER BY m.seq",
-      {integer(site_), integer(seq_), metering::to_string(today.year() / today.month())});
+      {integer(site_), integer(seq_)});
   if (!rows) return tl::unexpected(rows.error());
   std::vector<NewJob> jobs;
   for (int i = 0; i < rows->size(); ++i) {
@@ -326,8 +344,8 @@ Result<void> Taking::put_results() {
     const std::chrono::year_month_day day{std::chrono::floor<std::chrono::days>(at)};
     const auto put = connection_.run(
         "INSERT INTO result (site, kind, month, at, accepted, named, message, summary, sha256) "
-        "VALUES ($1, $2, coalesce((SELECT max(month) FROM month WHERE site = $1), $3), $4, $5, "
-        "false, $6, $7, $8)",
+        "VALUES ($1, $2, coalesce((SELECT max(month) FROM month WHERE site = $1 AND "
+        "month <= $3), $3), $4, $5, false, $6, $7, $8)",
         {integer(site_), std::string{recald::name_of(job.kind)},
          metering::to_string(metering::previous_month(day.year() / day.month())), parameter(at),
          job.accepted ? "true" : "false", text_of(job.message), text_of(job.result.document),
@@ -338,6 +356,7 @@ Result<void> Taking::put_results() {
 }
 
 Result<void> Taking::put_watermark() {
+  const bool is_end = until_.entries == kHistoryTold;  // which is no row
   postgres::Parameter newest;
   for (const OutboxEntry& entry : batch_.entries) {
     const auto* const interval = std::get_if<StoredInterval>(&entry.stored);
@@ -348,10 +367,12 @@ Result<void> Taking::put_watermark() {
   return nothing_or_error(connection_.run(
       "WITH w AS (UPDATE source SET entries = $3, events = $4, results = $5 "
       "WHERE site = $1 AND outbox = $2) "
-      "UPDATE site SET seq = $6, event_seq = $7, newest = greatest(newest, $8::timestamptz) "
+      "UPDATE site SET seq = $6, event_seq = $7, newest = "
+      "CASE WHEN newest > now() + interval '1 hour' THEN coalesce($8::timestamptz, newest) "
+      "ELSE greatest(newest, $8::timestamptz) END "
       "WHERE number = $1",
       {integer(site_), integer(batch_.outbox), integer(until_.entries), integer(until_.events),
-       integer(until_.results), integer(seq_of(until_.entries)),
+       integer(until_.results), integer(is_end ? seq_ : seq_of(until_.entries)),
        integer(event_seq_ + until_.events - known_.events), newest}));
 }
 
@@ -389,9 +410,10 @@ Result<Watermark> take(Connection& connection, const std::string& site, const Re
 
 Result<std::vector<std::pair<std::string, Watermark>>> watermarks(Connection& connection) {
   const auto rows = connection.run(
-      "SELECT DISTINCT ON (t.id) t.id, s.outbox, s.entries, s.events, s.results "
-      "FROM source s JOIN site t ON t.number = s.site WHERE t.retired IS NULL "
-      "ORDER BY t.id, s.number DESC");
+      "SELECT DISTINCT ON (t.id) t.id, coalesce(s.outbox, 0), coalesce(s.entries, 0), "
+      "coalesce(s.events, 0), coalesce(s.results, 0) "
+      "FROM site t LEFT JOIN source s ON s.site = t.number WHERE t.retired IS NULL "
+      "ORDER BY t.id, s.number DESC NULLS LAST");
   if (!rows) return tl::unexpected(rows.error());
   std::vector<std::pair<std::string, Watermark>> found;
   for (int i = 0; i < rows->size(); ++i) {

@@ -19,13 +19,13 @@ namespace recald::record {
 /// whatever numbers it gives. Where the record has less than what the gateway took for told,
 /// nothing is taken: the answer says so, and the gateway tells all of it again.
 /// @param now  When it came.
-/// @return the watermark after it, zeros for an outbox that the record does not know (of an empty
-///         batch, or behind); not_found: the site is not registered, or retired; io_failed: nothing
+/// @return the watermark after it, zeros for an outbox that the record does not know; not_found:
+/// the site is not registered, or retired; io_failed: nothing
 ///         was taken as far as we know, try later.
 [[nodiscard]] Result<Watermark> take(postgres::Connection& connection, const std::string& site,
                                      const RecordBatch& batch, metering::Instant now);
 
-/// The newest outbox's watermark of each site that has sent something.
+/// The newest outbox's watermark of each site; of outbox 0 where none has sent anything.
 [[nodiscard]] Result<std::vector<std::pair<std::string, Watermark>>> watermarks(
     postgres::Connection& connection);
 

@@ -290,9 +290,10 @@ Result<bool> hand_back(Connection& connection, const FleetJob& job) {
 Result<std::map<std::string, std::string>> state_before(Connection& connection,
                                                         const FleetJob& job) {
   const auto rows = connection.run(
-      fmt::format("SELECT n.name, f.bytes FROM job j JOIN site_state n ON n.job = "
-                  "coalesce(j.state_of, {}) JOIN whole_file f ON f.sha256 = n.sha256 WHERE j.number = $1",
-                  kJobBefore),
+      fmt::format(
+          "SELECT n.name, f.bytes FROM job j JOIN site_state n ON n.job = "
+          "coalesce(j.state_of, {}) JOIN whole_file f ON f.sha256 = n.sha256 WHERE j.number = $1",
+          kJobBefore),
       {integer(job.number)});
   if (!rows) return tl::unexpected(rows.error());
   return named_bytes(*rows);

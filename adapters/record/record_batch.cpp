@@ -358,10 +358,7 @@ Result<Parsed> parse_object(std::string_view what, std::string_view text) {
 }
 
 std::int64_t read_outbox(Reader& reader, const Parsed& json) {
-  const std::int64_t outbox =
-      reader.integer(reader.member(json, "outbox"), "outbox", -kNumber_max, kNumber_max);
-  if (outbox == 0) reader.refuse("outbox", "is 0");
-  return outbox;
+  return reader.integer(reader.member(json, "outbox"), "outbox", -kNumber_max, kNumber_max);
 }
 
 }  // namespace
@@ -427,6 +424,7 @@ Result<RecordBatch> parse_batch(std::string_view text) {
                     .after = read_progress(reader, reader.member(*json, "after")),
                     .question = reader.integer(*json, "question", kNumber_max),
                     .is_first = reader.flag(reader.member(*json, "first"), "first")};
+  if (batch.outbox == 0) reader.refuse("outbox", "is 0");
   batch.entries = reader.list<OutboxEntry>(*json, "entries", batch.after.entries, read_entry);
   batch.events = reader.list<StoreEvent>(*json, "events", batch.after.events, read_event);
   batch.results = reader.list<StoredJob>(*json, "results", batch.after.results, read_result);

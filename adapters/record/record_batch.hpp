@@ -34,7 +34,7 @@ struct Progress {
 /// Until where the record has committed what one outbox said: the gateway may forget that.
 struct Watermark {
   /// Identity of the outbox: numbers of another mean something else. Negative: of the past that the
-  /// store had before.
+  /// store had before. 0: the record has nothing of the site.
   std::int64_t outbox = 0;
   Progress until;
   std::int64_t answers = 0;  ///< The question of the batch that it is about; 0: told unasked.
@@ -42,7 +42,10 @@ struct Watermark {
   bool operator==(const Watermark&) const = default;
 };
 
-/// A part of what a gateway's store has, in order. Empty: asks for the watermark.
+/// The last number of an outbox of the past, greater than any other: all of it was told.
+inline constexpr std::int64_t kHistoryTold = std::int64_t{1} << 46;
+
+/// A part of what a gateway's store has, in order.
 struct RecordBatch {
   std::int64_t outbox = 0;
   Progress after;             ///< All up to here was told before.

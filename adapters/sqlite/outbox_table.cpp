@@ -71,15 +71,16 @@ Result<void> keep_outbox_for(Database& database, const std::vector<std::string>&
       if (std::ranges::find(*kept, cursor) != kept->end()) continue;
       if (auto put = put_cursor(database, cursor, *last); !put) return put;
     }
-    auto forget = database.prepare("DELETE FROM cursor WHERE destination IN (?1, ?2, ?3, ?4, ?5, ?6)");
+    auto forget =
+        database.prepare("DELETE FROM cursor WHERE destination IN (?1, ?2, ?3, ?4, ?5, ?6)");
     if (!forget) return tl::unexpected(forget.error());
     for (const std::string& cursor : *kept) {
       const std::string name = cursor.substr(kPrefix.size());
       if (std::ranges::find(destinations, name) != destinations.end()) continue;
       int parameter = 0;
-      for (const std::string& of_it : {cursor, events_cursor(name), results_cursor(name),
-                                       history_cursor(name), identity_cursor(name),
-                                       taken_cursor(name)}) {
+      for (const std::string& of_it :
+           {cursor, events_cursor(name), results_cursor(name), history_cursor(name),
+            identity_cursor(name), taken_cursor(name)}) {
         forget->bind(parameter++, std::string_view{of_it});
       }
       if (auto done = forget->run(); !done) return done;
@@ -144,7 +145,9 @@ Result<void> put_outbox_position(Database& database, const std::string& destinat
 }
 
 Result<void> forget_identities(Database& database) {
-  return database.execute("DELETE FROM cursor WHERE destination GLOB 'identity for *'");
+  return database.execute(
+      "DELETE FROM cursor WHERE destination GLOB 'identity for *' OR "
+      "destination GLOB 'history of *'");
 }
 
 }  // namespace recald::sqlite

@@ -87,7 +87,9 @@ utility = "electricity"
 };
 
 TEST_F(FleetGateway, EverythingReachesTheRecordWhoeverIsKilled) {
+  EXPECT_EQ(daemon_->end(SIGTERM), 0);
   auto record = std::make_unique<PlayedRecord>(broker_.port(), "depot", "secret", Mood::away);
+  start();
   push(0, 40);
   ASSERT_TRUE(eventually([&] { return !record->payloads().empty(); })) << daemon_->said();
   // While it waits for the record's word, everything else goes on.
@@ -110,7 +112,11 @@ TEST_F(FleetGateway, EverythingReachesTheRecordWhoeverIsKilled) {
 }
 
 TEST_F(FleetGateway, ABrokerThatComesBackIsUsedAgain) {
+  EXPECT_EQ(daemon_->end(SIGTERM), 0);
   PlayedRecord record{broker_.port(), "depot", "secret"};
+  start();
+  // It has no past.
+  ASSERT_TRUE(eventually([&] { return !record.of("depot").entries.empty(); })) << daemon_->said();
   push(0, 4);
   ASSERT_TRUE(eventually([&] { return record.means_of("depot").size() == 4; })) << daemon_->said();
   ASSERT_TRUE(eventually([&] { return waiting() == 0; }));

@@ -32,7 +32,10 @@ started = []
 
 
 def run(*command, **options):
-    return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True, **options).stdout
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
+    if done.returncode != 0:
+        raise SystemExit(f"{command} ended with {done.returncode}: {done.stdout}{done.stderr}")
+    return done.stdout
 
 
 def start(*command, log, **options):
@@ -477,7 +480,7 @@ def pages_of(place, site, text, count):
                   "FROM site s, site_version v WHERE v.site = 1 AND v.number = 1 AND s.id LIKE 'copy-%'")
         fleet.ask("INSERT INTO job (site, version, kind, month, until_seq, now, input_sha256, asked_by, state) "
                   "SELECT s.number, s.version, 'calibration', to_char(date '2023-01-01' + make_interval(months => m), 'YYYY-MM'), m, "
-                  "now(), md5(s.id || m), 'month', CASE WHEN s.number % 50 = 0 THEN 'failed' ELSE 'done' END "
+                  "now(), md5(s.id || '/' || m), 'month', CASE WHEN s.number % 50 = 0 THEN 'failed' ELSE 'done' END "
                   "FROM site s, generate_series(0, 23) m")
         fleet.ask("INSERT INTO result (site, job, kind, month, at, accepted, named, message, summary, sha256) "
                   "SELECT j.site, j.number, j.kind, j.month, now(), true, false, r.message, r.summary, r.sha256 "

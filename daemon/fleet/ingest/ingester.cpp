@@ -84,6 +84,10 @@ mqtt::Message told(const std::string& site, const record::Watermark& watermark) 
           .is_retained = true};
 }
 
+bool is_less(const record::Progress& has, const record::Progress& wanted) {
+  return has.entries < wanted.entries || has.events < wanted.events || has.results < wanted.results;
+}
+
 metering::Instant now() { return std::chrono::floor<seconds>(std::chrono::system_clock::now()); }
 
 class Ingester {
@@ -167,6 +171,14 @@ class Ingester {
       return mqtt::Message{};
     }
     const auto watermark = record::take(record, site, *batch, now());
+    if (watermark && is_less(watermark->until, batch->after)) {
+      ++counts_.refused;
+      refuse(site,
+             fmt::format("the record has less of site '{}' than its gateway was told, as after "
+                         "a backup was restored: the gateway sends everything again",
+                         site));
+      return told(site, *watermark);
+    }
     if (watermark) {
       ++counts_.batches;
       counts_.entries += static_cast<std::int64_t>(batch->entries.size());

@@ -17,7 +17,8 @@ namespace recald::daemon {
 struct IngestCounts {
   std::int64_t batches = 0;  ///< Committed, those that came again included.
   std::int64_t entries = 0;  ///< Intervals and months in them.
-  std::int64_t refused = 0;  ///< Batches that cannot be taken: unknown sites, or no batches at all.
+  /// Batches that cannot be taken: of unknown sites, of more than the record has, or no batches.
+  std::int64_t refused = 0;
 };
 
 /// Takes batches until it is told to stop. While the record is away it leaves the broker and tries

@@ -242,21 +242,22 @@ void write_map(Html& html, const std::vector<const PortfolioRow*>& rows) {
   html.markup("</svg></figure>");
 }
 
-/// "1,000 sites: 3 silent, 0 with a wrong clock, 2 with a job that failed, 12 with changes, 4 with
+/// "1,000 sites: 3 silent, 1 late, 0 with a wrong clock, 2 with a job that failed, 12 with changes, 4 with
 /// a likely cause."
 std::string summary_text(const std::vector<const PortfolioRow*>& rows) {
-  int silent = 0, ahead = 0, troubled = 0, changed = 0, named = 0;
+  int silent = 0, late = 0, ahead = 0, troubled = 0, changed = 0, named = 0;
   for (const PortfolioRow* row : rows) {
     silent += row->feed == Feed::silent ? 1 : 0;
+    late += row->feed == Feed::late ? 1 : 0;
     ahead += row->feed == Feed::ahead ? 1 : 0;
     troubled += row->troubled ? 1 : 0;
     changed += row->alarms.empty() ? 0 : 1;
     named += row->named.empty() ? 0 : 1;
   }
   return fmt::format(
-      "{} sites: {} silent, {} with a wrong clock, {} with a job that failed, {} with changes, {} "
-      "with a likely cause.",
-      report::count_text(static_cast<double>(rows.size())), silent, ahead, troubled, changed,
+      "{} sites: {} silent, {} late, {} with a wrong clock, {} with a job that failed, {} with "
+      "changes, {} with a likely cause.",
+      report::count_text(static_cast<double>(rows.size())), silent, late, ahead, troubled, changed,
       named);
 }
 

@@ -27,7 +27,10 @@ Sent send_safely(Sink& sink, const OutgoingBatch& batch, const std::stop_token& 
   }
 }
 
-constexpr int kResults_max = 10;  // of a tenth of a megabyte each
+const OutboxEntry kEndOfHistory{
+    .number = record::kHistoryTold, .meter = "", .interval = std::chrono::seconds{1}, .stored = {}};
+constexpr std::chrono::hours kCalm{24};  // without being told anew
+constexpr int kResults_max = 10;         // of a tenth of a megabyte each
 constexpr std::array kJobKinds{JobKind::calibration, JobKind::diagnosis};
 
 /// The number before the first job that waits or runs, so that a position passes none; without
@@ -143,14 +146,15 @@ Result<OutgoingBatch> Forwarder::next_history() {
   const auto known = ports_.store.cursor(cursor);
   if (!known) return tl::unexpected(known.error());
   const std::int64_t after = known->value_or(0);
-  if (after == kHistoryTold) return batch;
+  if (after >= record::kHistoryTold) return batch;
   auto entries = history_after(ports_.store, destination_.history, after, batch_);
   if (!entries) return tl::unexpected(entries.error());
-  if (entries->empty()) {
-    auto put = ports_.store.put_cursor(cursor, kHistoryTold);
+  if (entries->empty() && !destination_.has_identity) {
+    auto put = ports_.store.put_cursor(cursor, record::kHistoryTold);
     if (!put) return tl::unexpected(put.error());
     return batch;
   }
+  if (entries->empty()) entries->push_back(kEndOfHistory);
   batch.is_history = true;
   batch.after.entries = after;
   batch.entries = std::move(*entries);
@@ -207,21 +211,25 @@ Result<OutboxPosition> Forwarder::position() {
   if (!position) return position;
   const std::int64_t left_out = position->last - position->told - rules_.waiting_max;
   if (left_out <= 0) return position;
+  if (destination_.has_identity) {
+    if (auto begun = begin_anew(ports_.store, destination_.id); !begun) {
+      return tl::unexpected(begun.error());
+    }
+    tell_of_anew("has not taken anything for so long that more waits than is kept for it");
+    return ports_.store.outbox_position(destination_.id);
+  }
   position->told += left_out;
   if (auto put = ports_.store.put_outbox_position(destination_.id, position->told); !put) {
     return tl::unexpected(put.error());
   }
-  tell_(
-      {.time = ports_.loop.now().instant(),
-       .severity = Severity::error,
-       .kind = "forward_left_out",
-       .subject = destination_.words,
-       .text = fmt::format("{} has not taken anything for so long that the oldest {} intervals "
-                           "and months are not sent to it any more; {}",
-                           destination_.words, left_out,
-                           destination_.has_identity ? "it is sent the whole store when it is back"
-                                                     : "they are in the store"),
-       .is_counted = true});
+  tell_({.time = ports_.loop.now().instant(),
+         .severity = Severity::error,
+         .kind = "forward_left_out",
+         .subject = destination_.words,
+         .text = fmt::format("{} has not taken anything for so long that the oldest {} intervals "
+                             "and months are not sent to it any more; they are in the store",
+                             destination_.words, left_out),
+         .is_counted = true});
   return position;
 }
 
@@ -256,9 +264,7 @@ void Forwarder::finish(const OutgoingBatch& batch, const Sent& sent) {
   is_sending_ = false;
   switch (sent.outcome) {
     case Sent::Outcome::taken:
-      if (sent.until && !batch.is_history && is_beyond_us(*sent.until)) {
-        return tell_anew(batch, sent);
-      }
+      if (is_beyond_us(batch, sent)) return tell_anew(batch, sent);
       if (!move_past(batch)) return;
       break;
     case Sent::Outcome::behind:
@@ -306,10 +312,12 @@ bool Forwarder::move_past(const OutgoingBatch& batch) {
   return moved.has_value();
 }
 
-/// Numbers that this store never gave: it is an image of what it was once, or somebody else's.
-bool Forwarder::is_beyond_us(const record::Progress& until) {
-  const auto position = ports_.store.outbox_position(destination_.id);
-  return position && until.entries > position->last;
+/// What was on its way when a process ended explains one batch. Beyond it are numbers that this
+/// store never gave: it is an image of what it was once, or somebody else's.
+bool Forwarder::is_beyond_us(const OutgoingBatch& batch, const Sent& sent) const {
+  if (!sent.until || batch.is_history) return false;
+  const std::int64_t batch_max = std::max<std::int64_t>(rules_.batch, ForwardRules{}.batch);
+  return sent.until->entries > batch.after.entries + batch_max;
 }
 
 /// What one side has and the other does not know of is not guessed: all is told again, under
@@ -318,30 +326,38 @@ void Forwarder::tell_anew(const OutgoingBatch& batch, const Sent& sent) {
   const bool is_behind = sent.outcome == Sent::Outcome::behind;
   const auto done = ports_.store.as_one([&]() -> Result<void> {
     if (auto begun = begin_anew(ports_.store, destination_.id); !begun) return begun;
-    // What waits is in the store, and goes with its past.
-    const auto position = ports_.store.outbox_position(destination_.id);
-    if (!position) return tl::unexpected(position.error());
-    auto put_last = ports_.store.put_outbox_position(destination_.id, position->last);
-    if (!put_last) return put_last;
-    if (!is_behind || !sent.until) return {};
-    const auto go_back = [&](const std::string& cursor, std::int64_t from, std::int64_t to) {
-      return ports_.store.put_cursor(cursor, std::min(from, to));
-    };
-    auto put = go_back(events_cursor(destination_.id), batch.after.events, sent.until->events);
+    // Of an outbox that it does not know, it is told what happens from now on.
+    if (!is_behind || batch.is_history || *sent.until == record::Progress{}) return {};
+    auto put = ports_.store.put_cursor(events_cursor(destination_.id),
+                                       std::min(batch.after.events, sent.until->events));
     if (!put) return put;
-    return go_back(results_cursor(destination_.id), batch.after.results, sent.until->results);
+    return ports_.store.put_cursor(results_cursor(destination_.id),
+                                   std::min(batch.after.results, sent.until->results));
   });
   if (!done) return wait_after({.outcome = Sent::Outcome::later, .why = done.error().message});
+  tell_of_anew(is_behind
+                   ? "has less than it had confirmed, as after a backup of it was restored"
+                   : "has more than this store has told it, as after an image of this machine "
+                     "was restored");
+  // The first time at once; where two records answer in turns, this would have no end.
+  const milliseconds now = ports_.loop.now().monotonic;
+  const bool was_calm = !anew_at_ || now - *anew_at_ > kCalm;
+  const milliseconds wait = was_calm ? milliseconds{0} : anew_wait_;
+  anew_wait_ = std::clamp(2 * wait, rules_.retry_min, rules_.asked_max);
+  anew_at_ = now;
+  not_before_ = now + wait;
+  schedule(wait);
+}
+
+void Forwarder::tell_of_anew(const std::string& why) {
   tell_({.time = ports_.loop.now().instant(),
          .severity = Severity::warning,
          .kind = "forward_anew",
          .subject = destination_.words,
-         .text = fmt::format(
-             "{} has {} than it was told, as after a backup of {} was restored; everything that "
-             "the store has is sent to it again",
-             destination_.words, is_behind ? "less" : "more", is_behind ? "it" : "this gateway"),
+         .text = fmt::format("{} {}; everything that the store has of the present meters is sent "
+                             "to it again",
+                             destination_.words, why),
          .is_counted = true});
-  schedule(milliseconds{0});
 }
 
 bool Forwarder::set_aside(const OutgoingBatch& batch, const std::string& why) {

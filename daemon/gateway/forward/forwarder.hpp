@@ -88,8 +88,9 @@ class Forwarder {
   void finish(const OutgoingBatch& batch, const Sent& sent);
   [[nodiscard]] Result<void> identify(OutgoingBatch& batch);
   [[nodiscard]] bool move_past(const OutgoingBatch& batch);
-  [[nodiscard]] bool is_beyond_us(const record::Progress& until);
+  [[nodiscard]] bool is_beyond_us(const OutgoingBatch& batch, const Sent& sent) const;
   void tell_anew(const OutgoingBatch& batch, const Sent& sent);
+  void tell_of_anew(const std::string& why);
   [[nodiscard]] bool set_aside(const OutgoingBatch& batch, const std::string& why);
   void wait_after(const Sent& sent);
   void tell_of_success();
@@ -101,6 +102,8 @@ class Forwarder {
   ForwardRules rules_;
   int batch_;  ///< Entries at a time now: fewer after a refusal, to find what is refused.
   std::chrono::milliseconds wait_{0};  ///< After the last failure; zero: it did not fail.
+  std::optional<std::chrono::milliseconds> anew_at_;  ///< When all was begun to be told again.
+  std::chrono::milliseconds anew_wait_{0};            ///< Before the next time, if that is soon.
   std::chrono::milliseconds not_before_{0};
   std::string why_;
   std::optional<metering::Instant> told_at_;

@@ -11,6 +11,10 @@ namespace recald::daemon {
 namespace {
 
 using record::RecordBatch;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr int kTimes_max = 3;  ///< Of one batch, before it waits like after a failure.
 
 std::size_t count_in(const RecordBatch& batch) {
   return batch.entries.size() + batch.events.size() + batch.results.size();
@@ -65,8 +69,7 @@ class RecordSink final : public Sink {
   Sent send(RecordBatch batch, const std::stop_token& stop) {
     record::Watermark wanted{.outbox = batch.outbox, .until = batch.until()};
     // What was sent before the last failure may have arrived after it.
-    const int calls = link_->calls();
-    if (const auto said = link_->wait_for(wanted, calls, std::chrono::milliseconds{0}, stop)) {
+    if (const auto said = link_->wait_for(wanted, link_->calls(), milliseconds{0}, stop)) {
       return {.until = said->until};
     }
     wanted.answers = batch.question = link_->next_question();
@@ -75,23 +78,27 @@ class RecordSink final : public Sink {
       return send_in_halves(std::move(batch), stop);
     }
     if (payload.size() > rules_.result_bytes) payload = without_documents(batch);
-    auto published = link_->publish(payload, rules_.publish_max, stop);
-    if (!published && published.error().code == ErrorCode::out_of_range) {
-      // The broker takes less than we do.
-      if (count_in(batch) > 1) return send_in_halves(std::move(batch), stop);
-      published = link_->publish(without_documents(batch), rules_.publish_max, stop);
-    }
-    if (!published) return waits(published.error().message);
-    const auto until = std::chrono::steady_clock::now() + rules_.confirm_max;
-    const auto said = link_->wait_for(wanted, calls, rules_.confirm_max, stop);
-    if (said) {
-      const bool is_taken = covers(*said, wanted);
-      return {.outcome = is_taken ? Sent::Outcome::taken : Sent::Outcome::behind,
-              .until = said->until};
-    }
-    if (link_->calls() != calls && !stop.stop_requested()) return send(std::move(batch), stop);
-    if (std::chrono::steady_clock::now() < until) {
-      return waits("the connection was lost before the fleet's record confirmed what was sent");
+    const auto until = steady_clock::now() + rules_.confirm_max;
+    for (int times = 1;; ++times) {
+      const int calls = link_->calls();
+      auto published = link_->publish(payload, rules_.publish_max, stop);
+      if (!published && published.error().code == ErrorCode::out_of_range) {
+        // The broker takes less than we do.
+        if (count_in(batch) > 1) return send_in_halves(std::move(batch), stop);
+        payload = without_documents(batch);
+        published = link_->publish(payload, rules_.publish_max, stop);
+      }
+      if (!published) return waits(published.error().message);
+      const auto left = std::chrono::ceil<milliseconds>(until - steady_clock::now());
+      const auto said = link_->wait_for(wanted, calls, left, stop);
+      if (said && covers(*said, wanted)) return {.until = said->until};
+      if (said) return {.outcome = Sent::Outcome::behind, .until = said->until};
+      const bool is_over = stop.stop_requested() || steady_clock::now() >= until;
+      if (is_over) break;
+      // A record that has just come may have lost what was on its way.
+      if (link_->calls() == calls || times == kTimes_max) {
+        return waits("the connection was lost before the fleet's record confirmed what was sent");
+      }
     }
     return waits(
         fmt::format("the fleet's record has not confirmed what was sent within {} s; `recald "

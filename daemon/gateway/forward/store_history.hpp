@@ -3,16 +3,12 @@
 
 #include <chrono>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "adapters/ports/store.hpp"
 
 namespace recald::daemon {
-
-/// The number after all others: everything was told.
-inline constexpr std::int64_t kHistoryTold = std::numeric_limits<std::int64_t>::max();
 
 struct MeterInStore {
   std::string id;

@@ -18,6 +18,7 @@ constexpr std::array kKinds{
     AlertKind{"alert_not_sent", "An alert could not be sent", false},
     AlertKind{"forward_failed", "Results cannot be sent on", false},
     AlertKind{"forward_refused", "Some results are refused where they are sent", false},
+    AlertKind{"forward_anew", "Everything is sent to the fleet again", false},
     AlertKind{"weather_frozen", "A weather sensor stands still", false},
     AlertKind{"calibration_rejected", "A calibration was not accepted", true},
     AlertKind{"calibration_failed", "A calibration failed", true},

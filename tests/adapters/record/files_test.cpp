@@ -42,9 +42,10 @@ TEST_F(Record, AScriptOfManyPagesIsStoredOnce) {
     return {};
   });
   ASSERT_TRUE(sums) << sums.error().message;
-  EXPECT_EQ(ask("SELECT count(*), sum(length(bytes)) / 100000 FROM file WHERE bytes IS NOT NULL AND "
-                "length(bytes) >= 100000"),
-            "1|1\n");
+  EXPECT_EQ(
+      ask("SELECT count(*), sum(length(bytes)) / 100000 FROM file WHERE bytes IS NOT NULL AND "
+          "length(bytes) >= 100000"),
+      "1|1\n");
   EXPECT_EQ(ask("SELECT count(*) FROM file_part"), "6\n");
 }
 

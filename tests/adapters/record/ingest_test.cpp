@@ -107,7 +107,10 @@ TEST_F(Record, WhatItHasLessThanItConfirmedIsSaidAndNothingIsTaken) {
   auto other = intervals(8, 2, 22);
   EXPECT_EQ(send(other)->until, Progress{});
   EXPECT_EQ(ask("SELECT count(*) FROM source"), "1\n");
+  // … and that all before it was told.
   other.is_first = true;
+  EXPECT_EQ(send(other)->until, Progress{});
+  ASSERT_TRUE(send(end_of_history(22)));
   EXPECT_EQ(send(other)->until, entries(10));
   other.is_first = false;
   EXPECT_EQ(send(other)->until, entries(10));
@@ -118,6 +121,7 @@ TEST_F(Record, AnotherOutboxGoesOnAndItsRowsWin) {
   ASSERT_TRUE(send(intervals(0, 10)));
   const std::string before = contents(*connection_, 10);
   // A restored backup gives numbers from 6 on again, for other values.
+  ASSERT_TRUE(send(end_of_history(22)));
   RecordBatch restored{.outbox = 22, .after = entries(5), .is_first = true};
   restored.entries = {interval_entry(6, "steam", kMarch + kQuarter, 77.0),
                       interval_entry(7, "power", kMarch, 1.0)};
@@ -143,14 +147,31 @@ TEST_F(Record, NothingIsTakenFromAnUnknownSite) {
   EXPECT_EQ(ask("SELECT count(*) FROM source"), "0\n");
 }
 
-TEST_F(Record, AnEmptyBatchAsksForTheWatermark) {
-  const RecordBatch question{.outbox = 11, .after = entries(3)};
-  const auto unknown = send(question);
-  ASSERT_TRUE(unknown) << unknown.error().message;
-  EXPECT_EQ(*unknown, (Watermark{.outbox = 11}));
-  EXPECT_EQ(ask("SELECT count(*) FROM source"), "0\n");
-  ASSERT_TRUE(send(intervals(0, 5)));
-  EXPECT_EQ(*send(question), (Watermark{.outbox = 11, .until = entries(5)}));
+// A gateway tells its past again: after its restoration, say.
+TEST_F(Record, ACorrectionThatIsTakenBackCounts) {
+  ASSERT_TRUE(send(intervals(0, 1)));
+  RecordBatch batch{.outbox = 11, .after = entries(1)};
+  const auto start = kMarch + kQuarter;
+  batch.entries = {interval_entry(2, "steam", start, 7.0), interval_entry(3, "steam", start, 0.1)};
+  ASSERT_TRUE(send(batch));
+  EXPECT_EQ(ask("SELECT seq, mean_kw FROM interval ORDER BY seq"), "1|0.1\n2|7\n3|0.1\n");
+}
+
+TEST_F(Record, ThePastIsStoredOnce) {
+  RecordBatch past = intervals(0, 4, -11);
+  past.is_first = true;
+  ASSERT_TRUE(send(past));
+  ASSERT_TRUE(send(end_of_history(11)));
+  RecordBatch again = intervals(0, 5, -22);  // and what came since
+  again.is_first = true;
+  std::get<StoredInterval>(again.entries[1].stored).reading.mean_kW = 77.0;
+  std::get<StoredInterval>(again.entries[2].stored).reading.validity = metering::Validity::suspect;
+  ASSERT_TRUE(send(again));
+  EXPECT_EQ(ask("SELECT row_number() OVER (ORDER BY seq), mean_kw, validity FROM interval"),
+            "1|0.1|0\n2|0.2|0\n3|0.30000000000000004|0\n4|0.4|0\n5|77|0\n"
+            "6|0.30000000000000004|4\n7|0.5|0\n");
+  EXPECT_EQ(ask("SELECT count(*) FROM meter"), "1\n");  // the end names none
+  EXPECT_EQ(ask("SELECT count(*) FROM source WHERE entries = 1::bigint << 46"), "1\n");
 }
 
 TEST_F(Record, NothingIsSaidOfWhatCouldNotBeCommitted) {
@@ -280,6 +301,7 @@ TEST_F(Record, EventsAndResultsOfGatewaysAreKeptOnce) {
   EXPECT_EQ(ask("SELECT summary FROM result"), "{\"gap\":0.1}\n");
   EXPECT_EQ(ask("SELECT count(*) FROM result"), "1\n");
   // A new outbox numbers its events again.
+  ASSERT_TRUE(send(end_of_history(12)));
   RecordBatch restored{.outbox = 12, .after = {.events = 1}, .is_first = true};
   restored.events = {{.time = kNow, .kind = "restored", .number = 2}};
   ASSERT_TRUE(send(restored));
@@ -344,8 +366,8 @@ TEST_F(Record, AMonthWithoutAnOutputThatCanBeUsedIsNoJob) {
 TEST_F(Record, AMonthOfTheFutureIsNoJobAndNoJobsLabel) {
   RecordBatch batch{.outbox = 11};
   batch.entries = {month_entry(1, "steam", month_of(2024, 2), 1.0),
-                   month_entry(2, "steam", month_of(2026, 8), 1.0),
-                   month_entry(3, "power", month_of(2026, 8), 1.0)};
+                   month_entry(2, "steam", month_of(2036, 8), 1.0),
+                   month_entry(3, "power", month_of(2036, 8), 1.0)};
   ASSERT_TRUE(send(batch));
   EXPECT_EQ(ask("SELECT count(*) FROM job"), "0\n");
   // The clock is right again.

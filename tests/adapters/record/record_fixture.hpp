@@ -64,6 +64,16 @@ inline RecordBatch intervals(std::int64_t after, int count, std::int64_t outbox 
   return batch;
 }
 
+/// What ends the past of an outbox.
+inline RecordBatch end_of_history(std::int64_t outbox) {
+  return {.outbox = -outbox,
+          .is_first = true,
+          .entries = {{.number = kHistoryTold,
+                       .meter = "",
+                       .interval = std::chrono::seconds{1},
+                       .stored = {}}}};
+}
+
 inline SiteDescription described(const std::string& id) {
   return {.id = id,
           .name = "Tower",

@@ -182,12 +182,14 @@ TEST_F(RestoreCommand, ARestoredStoreIsOfAnotherNumbering) {
     auto backup = sqlite::SqliteStore::open(path("backups/site-2024-03-03.db")).value();
     ASSERT_TRUE(backup.put_cursor(events_cursor("fleet"), 5).has_value());
     ASSERT_TRUE(backup.put_cursor(identity_cursor("fleet"), 81).has_value());
+    ASSERT_TRUE(backup.put_cursor(history_cursor("fleet"), 7).has_value());
   }
   const auto done = restore();
   ASSERT_EQ(done.exit_code, 0) << done.err;
   auto store = sqlite::SqliteStore::open(path("site.db")).value();
   EXPECT_EQ(store.cursor(events_cursor("fleet")).value(), 5);
   EXPECT_EQ(store.cursor(identity_cursor("fleet")).value(), std::nullopt);
+  EXPECT_EQ(store.cursor(history_cursor("fleet")).value(), std::nullopt);  // it is told again
 }
 
 TEST_F(RestoreCommand, WhatWasReplacedCanBePutBackWithItsLog) {

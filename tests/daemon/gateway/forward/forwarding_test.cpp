@@ -31,7 +31,7 @@ class ForwardingTest : public ::testing::Test {
   void SetUp() override {
     if (!Mosquitto::can_run()) GTEST_SKIP() << "mosquitto of Debian is not installed";
     ASSERT_TRUE(store_.keep_outbox_for({"fleet"}).has_value());
-    ASSERT_TRUE(store_.put_cursor(history_cursor("fleet"), kHistoryTold).has_value());
+    ASSERT_TRUE(store_.put_cursor(history_cursor("fleet"), record::kHistoryTold).has_value());
     ASSERT_TRUE(store_.commit({.intervals = {{{main_, kNoon, 4.0}}}}).has_value());
   }
 

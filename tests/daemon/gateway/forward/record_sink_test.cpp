@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <functional>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "adapters/ports/destination_cursors.hpp"
@@ -55,7 +57,7 @@ class RecordSinkTest : public ::testing::Test {
   }
 
   /// A gateway starts: a connection of its own, and what the store has.
-  void begin(const RecordRules& rules = kPatient) {
+  void begin(const RecordRules& rules = kPatient, const ForwardRules& forward = {}) {
     end();
     ASSERT_TRUE(store_.keep_outbox_for({"fleet"}).has_value());
     BrokerConfig broker;
@@ -79,7 +81,8 @@ class RecordSinkTest : public ::testing::Test {
                     .has_identity = true,
                     .history = history_},
         make_record_sink("depot", link_, rules),
-        [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); });
+        [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); },
+        forward);
     forwarder_->start();
   }
   void end() {
@@ -88,6 +91,12 @@ class RecordSinkTest : public ::testing::Test {
   }
   [[nodiscard]] bool is_connected() const {
     return eventually([this] { return link_->is_connected(); });
+  }
+
+  /// Within virtual minutes.
+  bool runs_until(const std::function<bool()>& is_so) {
+    for (int i = 0; i < 600 && !is_so(); ++i) loop_.run_for(milliseconds{500});
+    return is_so();
   }
 
   void store(int from, int until) {
@@ -331,26 +340,74 @@ TEST_F(RecordSinkTest, ARecordThatHasLessThanItHadIsToldEverythingAgain) {
     told_.clear();
     record.go_back("depot", before);
     loop_.run_for(minutes{1});
-    const auto already = static_cast<int>(before.entries.size());
-    EXPECT_THAT(record.means_of("depot"), SizeIs(already));  // nobody has noticed
+    std::vector<double> all = record.means_of("depot");  // nobody has noticed
     store(next, next + 1);
     loop_.run_for(minutes{1});
-    const auto taken = record.of("depot");
-    std::vector<double> all = numbers(0, already);
     std::ranges::copy(numbers(0, ++next), std::back_inserter(all));
     EXPECT_THAT(record.means_of("depot"), ElementsAreArray(all));
-    EXPECT_NE(taken.watermark.outbox, then.watermark.outbox);
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("forward_anew: the fleet has less than it was told")));
+    EXPECT_NE(record.of("depot").watermark.outbox, then.watermark.outbox);
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("forward_anew: the fleet has less than it had")));
     EXPECT_EQ(forwarder_->status().waiting, 0);
     store(next, next + 1);
-    happens("meter_silent");
+    happens("meter_fails");
     loop_.run_for(minutes{1});
-    EXPECT_THAT(record.means_of("depot"), SizeIs(already + ++next));
-    // A record that was lost hears of what was before it, too.
-    const auto events = store_.events_after(already > 0 ? 1 : 0, 100).value();
-    EXPECT_THAT(record.of("depot").events, SizeIs(events.size()));
-    EXPECT_THAT(record.of("depot").results, SizeIs(1));
+    all.push_back(next++);
+    EXPECT_THAT(record.means_of("depot"), ElementsAreArray(all));
+    // Of a record that is lost nobody knows what it had heard.
+    std::vector<std::string> kinds;
+    for (const StoreEvent& event : record.of("depot").events) kinds.push_back(event.kind);
+    EXPECT_THAT(kinds, before.events.empty()
+                           ? ElementsAreArray({"meter_fails"})
+                           : ElementsAreArray({"meter_silent", "meter_answers", "meter_fails"}));
   }
+}
+
+TEST_F(RecordSinkTest, ARecordThatLosesThePastWhileItIsToldLosesNothing) {
+  PlayedRecord record{broker_.port()};
+  history_ = {{"main", seconds{900}}};
+  store(0, 20);
+  happens("long_ago");
+  begin(kPatient, {.batch = 6});
+  ASSERT_TRUE(runs_until([&] { return record.means_of("depot").size() >= 12; }));
+  record.go_back("depot", {});
+  loop_.run_for(minutes{1});
+  store(20, 22);
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 22)));
+  EXPECT_THAT(record.of("depot").events, IsEmpty());
+  EXPECT_THAT(told_, ElementsAre(HasSubstr("forward_anew")));
+}
+
+TEST_F(RecordSinkTest, TwoRecordsThatAnswerInTurnsAreNotToldEverythingAllTheTime) {
+  PlayedRecord record{broker_.port()};
+  history_ = {{"main", seconds{900}}};
+  begin();
+  for (int i = 0; i < 600; ++i) {
+    store(i, i + 1);
+    loop_.run_for(seconds{2});
+    record.go_back("depot", {});
+    loop_.run_for(seconds{4});
+  }
+  EXPECT_GT(told_.size(), 5u);
+  EXPECT_LT(told_.size(), 15u);
+  loop_.run_for(hours{2});
+  store(600, 601);
+  loop_.run_for(hours{2});
+  const auto means = record.means_of("depot");
+  EXPECT_THAT(std::set<double>(means.begin(), means.end()), ElementsAreArray(numbers(0, 601)));
+}
+
+TEST_F(RecordSinkTest, WhereTooManyWaitTheStoreIsToldFromItsBeginning) {
+  PlayedRecord record{broker_.port(), Mood::away};
+  history_ = {{"main", seconds{900}}};
+  begin(kHasty, {.waiting_max = 50});
+  store(0, 60);
+  loop_.run_for(hours{1});
+  EXPECT_THAT(told_, ::testing::Contains(HasSubstr("forward_anew: the fleet has not taken anything "
+                                                   "for so long that more waits than is kept")));
+  record.set(Mood::takes);
+  loop_.run_for(hours{1});
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 60)));
 }
 
 // Numbers are given again, for other readings.
@@ -366,45 +423,37 @@ TEST_F(RecordSinkTest, AnImageOfAnEarlierStoreIsAnotherOutbox) {
   std::filesystem::copy_file(folder_ / "site.db", folder_ / "image.db");
   store_ = sqlite::SqliteStore::open(folder_ / "site.db").value();
   begin();
-  store(5, 9);
+  store(5, 600);
   loop_.run_for(minutes{1});
-  ASSERT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 9)));
+  std::vector<double> all = numbers(0, 600);
+  ASSERT_THAT(record.means_of("depot"), ElementsAreArray(all));
   end();
   store_ = sqlite::SqliteStore::open(folder_ / "image.db").value();
   begin();
-  store(20, 22);
+  store(1000, 2000);  // it has more numbers by now
   loop_.run_for(minutes{1});
-  EXPECT_THAT(record.means_of("depot"),
-              ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 0, 1, 2, 3, 4, 20, 21));
-  EXPECT_THAT(told_, ElementsAre(HasSubstr("forward_anew: the fleet has more than it was told")));
+  std::ranges::copy(numbers(0, 5), std::back_inserter(all));
+  std::ranges::copy(numbers(1000, 2000), std::back_inserter(all));
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(all));
+  EXPECT_THAT(told_, ElementsAre(HasSubstr("forward_anew: the fleet has more than this store")));
 }
 
-TEST_F(RecordSinkTest, MessagesAreNotTooLong) {
-  const PlayedRecord record{broker_.port()};
-  begin({.payload_bytes = 1500, .result_bytes = 4000});
-  loop_.run_for(seconds{10});
-  store(0, 100);
-  for (int i = 0; i < 10; ++i) happens("kind_" + std::to_string(i));
-  finish_job(std::string(3000, 'a'));
-  finish_job(std::string(5000, 'b'));
-  finish_job(std::string(2000, 'c'));
+// A worker that has just come says how far the record is.
+TEST_F(RecordSinkTest, WhatWasLostOnItsWayIsSentAgainWhenTheRecordCalls) {
+  PlayedRecord record{broker_.port()};
+  begin();  // it waits a minute for an answer
+  store(0, 5);
   loop_.run_for(minutes{1});
-  const auto taken = record.of("depot");
-  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 100)));
-  EXPECT_THAT(taken.events, SizeIs(10));
-  ASSERT_THAT(taken.results, SizeIs(3));
-  EXPECT_EQ(taken.results[0].result.document, std::string(3000, 'a'));
-  EXPECT_EQ(taken.results[1].result.document, "");
-  EXPECT_EQ(taken.results[2].result.document, std::string(2000, 'c'));
-  int with_results = 0;
-  for (const std::string& payload : record.payloads()) {
-    const bool is_result = !record::parse_batch(payload)->results.empty();
-    with_results += static_cast<int>(is_result);
-    EXPECT_LE(payload.size(), is_result ? 4000u : 1500u);
-  }
-  EXPECT_EQ(with_results, 3);
-  expect_one_after_the_other(record, {});
-  EXPECT_EQ(forwarder_->status().waiting, 0);
+  record.set(Mood::away);
+  store(5, 8);
+  std::jthread caller{[&] {
+    const std::size_t before = record.payloads().size();
+    if (eventually([&] { return record.payloads().size() > before; })) record.set(Mood::takes);
+  }};
+  loop_.run_for(seconds{3});
+  caller.join();
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 8)));
+  EXPECT_THAT(told_, IsEmpty());
 }
 
 class StrictBrokerTest : public RecordSinkTest {
