@@ -2,10 +2,7 @@
 /// nothing passes.
 #pragma once
 
-#include <arpa/inet.h>
 #include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -15,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/loopback.hpp"
+
 namespace recald::testing {
 
 /// On loopback, for TCP.
@@ -22,14 +21,9 @@ class DroppingProxy {
  public:
   /// Passes everything on to this port.
   explicit DroppingProxy(std::uint16_t to) : to_{to} {
-    ::sockaddr_in address = loopback(0);
-    ::socklen_t size = sizeof address;
-    if (::bind(listener_, reinterpret_cast<::sockaddr*>(&address), size) != 0 ||
-        ::listen(listener_, 50) != 0 ||
-        ::getsockname(listener_, reinterpret_cast<::sockaddr*>(&address), &size) != 0) {
+    if (port_ == 0 || ::listen(listener_, 50) != 0) {
       throw std::runtime_error("the proxy cannot listen");
     }
-    port_ = ntohs(address.sin_port);
     thread_ = std::jthread{[this](const std::stop_token& stop) { serve(stop); }};
   }
   ~DroppingProxy() {
@@ -54,14 +48,6 @@ class DroppingProxy {
   struct Pair {
     int client, server;
   };
-
-  static ::sockaddr_in loopback(std::uint16_t port) {
-    ::sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    return address;
-  }
 
   void serve(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
@@ -131,7 +117,7 @@ class DroppingProxy {
 
   std::uint16_t to_;
   int listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  std::uint16_t port_ = 0;
+  std::uint16_t port_ = bind_to_free_port(listener_);
   std::atomic<State> state_ = State::open;
   std::vector<Pair> pairs_;  ///< Of the thread.
   std::jthread thread_;

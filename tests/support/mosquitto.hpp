@@ -2,10 +2,6 @@
 /// sender.
 #pragma once
 
-#include <arpa/inet.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -20,6 +16,7 @@
 
 #include "adapters/mqtt/message.hpp"
 #include "tests/support/background_process.hpp"
+#include "tests/support/loopback.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::testing {
@@ -165,22 +162,6 @@ class Mosquitto {
  private:
   static constexpr const char* kBroker = "/usr/sbin/mosquitto";
 
-  static ::sockaddr_in loopback(std::uint16_t port) {
-    ::sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    return address;
-  }
-  static std::uint16_t free_port() {
-    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-    ::sockaddr_in address = loopback(0);
-    ::socklen_t size = sizeof address;
-    ::bind(socket, reinterpret_cast<::sockaddr*>(&address), size);
-    ::getsockname(socket, reinterpret_cast<::sockaddr*>(&address), &size);
-    ::close(socket);
-    return ntohs(address.sin_port);
-  }
   [[nodiscard]] bool listens() const {
     const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const ::sockaddr_in address = loopback(port_);

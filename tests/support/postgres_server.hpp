@@ -2,10 +2,8 @@
 /// processes, and started again with what it kept.
 #pragma once
 
-#include <arpa/inet.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -20,6 +18,7 @@
 
 #include "adapters/postgres/connection.hpp"
 #include "tests/support/background_process.hpp"
+#include "tests/support/loopback.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::testing {
@@ -144,18 +143,6 @@ class PostgresServer {
   [[nodiscard]] bool is_ready() const {
     return run_in_shell(tool("psql") + " -X -q -d postgres -c 'SELECT 1' >/dev/null 2>&1").status ==
            0;
-  }
-
-  static std::uint16_t free_port() {
-    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    ::sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = ::htonl(INADDR_LOOPBACK);
-    ::socklen_t size = sizeof address;
-    ::bind(socket, reinterpret_cast<::sockaddr*>(&address), size);
-    ::getsockname(socket, reinterpret_cast<::sockaddr*>(&address), &size);
-    ::close(socket);
-    return ntohs(address.sin_port);
   }
 
   /// State and parent of a process; '?' for one that is not there.

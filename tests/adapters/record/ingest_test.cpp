@@ -148,6 +148,27 @@ TEST_F(Record, NothingIsTakenFromAnUnknownSite) {
 }
 
 // A gateway tells its past again: after its restoration, say.
+TEST_F(Record, AClockThatWasAheadIsForgottenOnceItIsRight) {
+  const auto newest = [this] { return sites(*connection_)->at(0).newest; };
+  RecordBatch batch{.outbox = 11};
+  batch.entries = {interval_entry(1, "steam", kMarch, 1.0)};
+  ASSERT_TRUE(send(batch));
+  RecordBatch ahead{.outbox = 11, .after = entries(1)};
+  const metering::Instant wrong = std::chrono::sys_days{std::chrono::year{2036} / 3 / 1};
+  ahead.entries = {interval_entry(2, "steam", wrong, 1.0)};
+  ASSERT_TRUE(send(ahead));
+  EXPECT_EQ(newest(), wrong);
+  RecordBatch right{.outbox = 11, .after = entries(2)};
+  right.entries = {interval_entry(3, "steam", kMarch + kQuarter, 1.0)};
+  ASSERT_TRUE(send(right));
+  EXPECT_EQ(newest(), kMarch + kQuarter);
+  // What comes late does not turn it back.
+  RecordBatch late{.outbox = 11, .after = entries(3)};
+  late.entries = {interval_entry(4, "steam", kMarch - kQuarter, 1.0)};
+  ASSERT_TRUE(send(late));
+  EXPECT_EQ(newest(), kMarch + kQuarter);
+}
+
 TEST_F(Record, ACorrectionThatIsTakenBackCounts) {
   ASSERT_TRUE(send(intervals(0, 1)));
   RecordBatch batch{.outbox = 11, .after = entries(1)};

@@ -445,9 +445,9 @@ TEST_F(RecordSinkTest, WhatWasLostOnItsWayIsSentAgainWhenTheRecordCalls) {
   store(0, 5);
   loop_.run_for(minutes{1});
   record.set(Mood::away);
+  const std::size_t before = record.payloads().size();
   store(5, 8);
   std::jthread caller{[&] {
-    const std::size_t before = record.payloads().size();
     if (eventually([&] { return record.payloads().size() > before; })) record.set(Mood::takes);
   }};
   loop_.run_for(seconds{3});
