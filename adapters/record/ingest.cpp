@@ -201,37 +201,38 @@ Result<void> Taking::find_meters() {
       {integer(site_), numbers.parameter(), ids.parameter(), intervals.parameter()}));
 }
 
-/// What says the same as the newest row of its interval is not stored again: the past may be told
-/// once more, or with it what the outbox has too.
+/// The past may be told again: what says the same as the newest row of its interval is not stored
+/// once more.
 Result<void> Taking::put_intervals() {
-  Array starts, seqs, means, reasons, meters, validities, late, again;
-  std::set<std::pair<std::int64_t, Instant>> seen;
+  Array starts, seqs, means, reasons, meters, validities, late;
+  bool has_any = false;
   for (const OutboxEntry& entry : batch_.entries) {
     const auto* const interval = std::get_if<StoredInterval>(&entry.stored);
     if (interval == nullptr || !is_new(entry)) continue;
+    has_any = true;
     const metering::Reading& reading = interval->reading;
-    const std::int64_t meter = meter_of(entry);
     starts.add(seconds_of(reading.start));
     seqs.add(seq_of(entry.number));
     means.add(reading.mean_kW);
     reasons.add(static_cast<std::int64_t>(reading.reasons));
-    meters.add(meter);
+    meters.add(meter_of(entry));
     validities.add(static_cast<std::int64_t>(reading.validity));
     late.add(std::int64_t{reading.late});
-    again.add(std::int64_t{!seen.emplace(meter, reading.start).second});
   }
-  if (seen.empty()) return {};
-  return nothing_or_error(connection_.run(
-      "INSERT INTO interval (t_start, seq, mean_kw, site, reasons, meter, validity, late) "
-      "SELECT to_timestamp(t), s, mean, $1, r, m, v, l <> 0 FROM unnest($2::bigint[], "
-      "$3::bigint[], $4::float8[], $5::bigint[], $6::smallint[], $7::smallint[], $8::smallint[], "
-      "$9::smallint[]) AS u (t, s, mean, r, m, v, l, again) WHERE again <> 0 OR NOT EXISTS ("
-      "SELECT FROM (SELECT * FROM interval i WHERE i.site = $1 AND i.meter = m AND "
-      "i.t_start = to_timestamp(t) ORDER BY i.seq DESC LIMIT 1) known WHERE "
+  if (!has_any) return {};
+  constexpr auto kPast =
+      " WHERE NOT EXISTS (SELECT FROM (SELECT * FROM interval i WHERE i.site = $1 AND "
+      "i.meter = m AND i.t_start = to_timestamp(t) ORDER BY i.seq DESC LIMIT 1) known WHERE "
       "known.mean_kw IS NOT DISTINCT FROM mean AND known.reasons = r AND known.validity = v AND "
-      "known.late = (l <> 0))",
+      "known.late = (l <> 0))";
+  return nothing_or_error(connection_.run(
+      fmt::format("INSERT INTO interval (t_start, seq, mean_kw, site, reasons, meter, validity, "
+                  "late) SELECT to_timestamp(t), s, mean, $1, r, m, v, l <> 0 FROM "
+                  "unnest($2::bigint[], $3::bigint[], $4::float8[], $5::bigint[], $6::smallint[], "
+                  "$7::smallint[], $8::smallint[]) AS u (t, s, mean, r, m, v, l){}",
+                  batch_.outbox < 0 ? kPast : ""),
       {integer(site_), starts.parameter(), seqs.parameter(), means.parameter(), reasons.parameter(),
-       meters.parameter(), validities.parameter(), late.parameter(), again.parameter()}));
+       meters.parameter(), validities.parameter(), late.parameter()}));
 }
 
 Result<void> Taking::put_months() {

@@ -147,6 +147,13 @@ Result<OutgoingBatch> Forwarder::next_history() {
   if (!known) return tl::unexpected(known.error());
   const std::int64_t after = known->value_or(0);
   if (after >= record::kHistoryTold) return batch;
+  if (after == 0) {
+    // What waits by now is part of the past, which is read after this.
+    const auto position = ports_.store.outbox_position(destination_.id);
+    if (!position) return tl::unexpected(position.error());
+    auto put = ports_.store.put_outbox_position(destination_.id, position->last);
+    if (!put) return tl::unexpected(put.error());
+  }
   auto entries = history_after(ports_.store, destination_.history, after, batch_);
   if (!entries) return tl::unexpected(entries.error());
   if (entries->empty() && !destination_.has_identity) {
@@ -216,7 +223,7 @@ Result<OutboxPosition> Forwarder::position() {
       return tl::unexpected(begun.error());
     }
     tell_of_anew("has not taken anything for so long that more waits than is kept for it");
-    return ports_.store.outbox_position(destination_.id);
+    return position;
   }
   position->told += left_out;
   if (auto put = ports_.store.put_outbox_position(destination_.id, position->told); !put) {

@@ -29,10 +29,7 @@ Result<std::int64_t> outbox_identity(Store& store, const std::string& destinatio
 Result<void> begin_anew(Store& store, const std::string& destination) {
   return store.as_one([&]() -> Result<void> {
     if (auto put = put_new_identity(store, destination); !put) return tl::unexpected(put.error());
-    if (auto put = store.put_cursor(history_cursor(destination), 0); !put) return put;
-    const auto position = store.outbox_position(destination);
-    if (!position) return tl::unexpected(position.error());
-    return store.put_outbox_position(destination, position->last);
+    return store.put_cursor(history_cursor(destination), 0);
   });
 }
 

@@ -14,8 +14,7 @@ namespace recald::daemon {
 /// Made when there is none. @return 1 … 2^63 - 1
 [[nodiscard]] Result<std::int64_t> outbox_identity(Store& store, const std::string& destination);
 
-/// Another identity, with all of the store's past before it; what waits in the outbox is part of
-/// it.
+/// Another identity, with all of the store's past before it.
 [[nodiscard]] Result<void> begin_anew(Store& store, const std::string& destination);
 
 /// Whether the destination has taken anything of the outbox under its present identity.

@@ -169,7 +169,7 @@ TEST_F(Record, AClockThatWasAheadIsForgottenOnceItIsRight) {
   EXPECT_EQ(newest(), kMarch + kQuarter);
 }
 
-TEST_F(Record, ACorrectionThatIsTakenBackCounts) {
+TEST_F(Record, ACorrectionThatIsTakenBackCountsInOneBatchToo) {
   ASSERT_TRUE(send(intervals(0, 1)));
   RecordBatch batch{.outbox = 11, .after = entries(1)};
   const auto start = kMarch + kQuarter;
