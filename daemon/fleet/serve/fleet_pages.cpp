@@ -242,8 +242,8 @@ void write_map(Html& html, const std::vector<const PortfolioRow*>& rows) {
   html.markup("</svg></figure>");
 }
 
-/// "1,000 sites: 3 silent, 1 late, 0 with a wrong clock, 2 with a job that failed, 12 with changes, 4 with
-/// a likely cause."
+/// "1,000 sites: 3 silent, 1 late, 0 with a wrong clock, 2 with a job that failed, 12 with changes,
+/// 4 with a likely cause."
 std::string summary_text(const std::vector<const PortfolioRow*>& rows) {
   int silent = 0, late = 0, ahead = 0, troubled = 0, changed = 0, named = 0;
   for (const PortfolioRow* row : rows) {
