@@ -369,13 +369,12 @@ void write_jobs(Html& html, const std::string& caption, const std::vector<record
 }
 
 Response site_page(const FleetServed& served, const std::string& id) {
-  const auto portfolio = read_portfolio(served.record, served.now());
+  const auto portfolio = read_portfolio(served.record, served.now(), id);
   if (!portfolio) return unavailable(portfolio.error());
-  const auto row = std::ranges::find(portfolio->rows, id,
-                                     [](const PortfolioRow& one) { return one.site.site.id; });
-  if (row == portfolio->rows.end()) {
+  if (id.empty() || portfolio->rows.empty()) {
     return http::error_response(404, "not_found", fmt::format("there is no site '{}'", id));
   }
+  const PortfolioRow& row = portfolio->rows.front();
   std::vector<record::FleetResultRow> results;
   for (const JobKind kind : {JobKind::calibration, JobKind::diagnosis}) {
     auto newest = record::newest_results(served.record, kind, id);
@@ -385,18 +384,18 @@ Response site_page(const FleetServed& served, const std::string& id) {
   const auto jobs = record::jobs(served.record, id, kJobsShown);
   if (!jobs) return unavailable(jobs.error());
   Html html;
-  html.element("h1", site_words(row->site.site));
-  const Cell state = state_cell(*row);
+  html.element("h1", site_words(row.site.site));
+  const Cell state = state_cell(row);
   html.element("p", state.text, state.css_class);
   html.element("p", fmt::format("Last heard {}; newest interval {}; version {} of its site file.",
-                                row->site.heard ? metering::to_string(*row->site.heard) : "never",
-                                row->site.newest ? metering::to_string(*row->site.newest) : "none",
-                                row->site.version.number));
-  for (const std::string& alarm : row->alarms) html.element("p", "▲ " + alarm, "warn");
-  for (const NamedEffect& named : row->named) {
+                                row.site.heard ? metering::to_string(*row.site.heard) : "never",
+                                row.site.newest ? metering::to_string(*row.site.newest) : "none",
+                                row.site.version.number));
+  for (const std::string& alarm : row.alarms) html.element("p", "▲ " + alarm, "warn");
+  for (const NamedEffect& named : row.named) {
     html.element("p", fmt::format("Likely cause: {} ({}), {} a month", named.title,
                                   report::probability_text(named.probability),
-                                  money_text(named.money_month, row->site.site.currency)));
+                                  money_text(named.money_month, row.site.site.currency)));
   }
   write_results(html, results);
   write_jobs(html, "Jobs, newest first", *jobs);

@@ -183,12 +183,16 @@ Portfolio portfolio_of(std::vector<record::RecordedSite> sites,
   return portfolio;
 }
 
-Result<Portfolio> read_portfolio(postgres::Connection& record, metering::Instant now) {
+Result<Portfolio> read_portfolio(postgres::Connection& record, metering::Instant now,
+                                 const std::string& site) {
   auto sites = record::sites(record);
   if (!sites) return tl::unexpected(sites.error());
-  const auto calibrations = record::newest_results(record, JobKind::calibration);
+  if (!site.empty()) {
+    std::erase_if(*sites, [&](const record::RecordedSite& one) { return one.site.id != site; });
+  }
+  const auto calibrations = record::newest_results(record, JobKind::calibration, site);
   if (!calibrations) return tl::unexpected(calibrations.error());
-  const auto diagnoses = record::newest_results(record, JobKind::diagnosis);
+  const auto diagnoses = record::newest_results(record, JobKind::diagnosis, site);
   if (!diagnoses) return tl::unexpected(diagnoses.error());
   const auto troubled = record::troubled_jobs(record);
   if (!troubled) return tl::unexpected(troubled.error());

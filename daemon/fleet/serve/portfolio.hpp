@@ -86,7 +86,8 @@ struct PortfolioFilter {
                                      const std::vector<record::FleetJob>& troubled,
                                      metering::Instant now);
 
-/// The same, read. @return io_failed: the record is away.
-[[nodiscard]] Result<Portfolio> read_portfolio(postgres::Connection& record, metering::Instant now);
+/// The same, read. @param site  Empty: all. @return io_failed: the record is away.
+[[nodiscard]] Result<Portfolio> read_portfolio(postgres::Connection& record, metering::Instant now,
+                                               const std::string& site = {});
 
 }  // namespace recald::daemon
