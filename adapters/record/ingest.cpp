@@ -8,7 +8,6 @@
 
 #include "adapters/record/job_rows.hpp"
 #include "adapters/record/schema.hpp"
-#include "adapters/record/sites.hpp"
 #include "adapters/record/values.hpp"
 
 namespace recald::record {
@@ -137,7 +136,6 @@ Result<Taking::End> Taking::run() {
         ErrorCode::not_found,
         fmt::format("the record has no site {}: register it with recald fleet add", site_id_));
   }
-  const auto& [outbox, after, question, is_first, entries, events, results] = batch_;
   if (is_behind()) {
     if (!is_new_outbox_) until_ = known_;
     return End::behind;
@@ -146,9 +144,10 @@ Result<Taking::End> Taking::run() {
   const auto beyond = [](std::int64_t known, std::int64_t told, const auto& rows) {
     return std::max({known, told, rows.empty() ? 0 : rows.back().number});
   };
-  until_ = {.entries = beyond(known_.entries, after.entries, entries),
-            .events = beyond(known_.events, after.events, events),
-            .results = beyond(known_.results, after.results, results)};
+  const Progress& after = batch_.after;
+  until_ = {.entries = beyond(known_.entries, after.entries, batch_.entries),
+            .events = beyond(known_.events, after.events, batch_.events),
+            .results = beyond(known_.results, after.results, batch_.results)};
   if (until_ == known_ && !is_new_outbox_) return End::taken;
 
   auto done = find_meters();

@@ -189,7 +189,7 @@ struct Role {
 constexpr auto kRoles = std::to_array<Role>({
     {"recald_ingest",
      "GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO recald_ingest;"
-     "GRANT INSERT ON source, meter, interval, month, event, result, job, audit TO recald_ingest;"
+     "GRANT INSERT ON source, meter, interval, month, event, result, job TO recald_ingest;"
      "GRANT UPDATE ON site, source, job TO recald_ingest;"
      "GRANT EXECUTE ON FUNCTION recald_make_partition TO recald_ingest"},
     {"recald_worker",
