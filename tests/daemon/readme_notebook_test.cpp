@@ -1,4 +1,4 @@
-/// The notebook of README.md, run against a running daemon and a real calibration.
+/// The notebook of daemon/gateway/serve/notebook.md, run against a running daemon and a real calibration.
 /// run_readme_notebook.py says what is checked.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(ReadmeNotebook, ReadsMonthsIntervalsAndDraws) {
 
   const std::string command = RECALD_ARVIZ "/bin/python -W ignore " RECALD_SOURCE_DIR
                                            "/tests/daemon/run_readme_notebook.py " RECALD_SOURCE_DIR
-                                           "/README.md " +
+                                           "/daemon/gateway/serve/notebook.md " +
                               daemon.address() + " " + results + " 2>&1";
   const auto [status, said] = recald::testing::run_in_shell(command);
   EXPECT_EQ(status, 0) << said;

@@ -1,6 +1,6 @@
-"""Runs the notebook of README.md as it stands there, and holds what it has read against the daemon's JSON.
+"""Runs the notebook of notebook.md as it stands there, and holds what it has read against the daemon's JSON.
 
-    run_readme_notebook.py README.md DAEMON RESULTS    the address and the folder that take the place of those in it
+    run_readme_notebook.py notebook.md DAEMON RESULTS    the address and the folder that take the place of those in it
 
 Exit 0, or a traceback.
 """
