@@ -19,7 +19,7 @@ class AfterHours final : public model::hourly::Alteration {
   double late_h_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_after_hours(const SiteFacts&) {
   return {{.name = "late_stop",
            .unit = "h",
            .prior = half_normal(3.0),
@@ -27,8 +27,8 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {1.0, 2.0, 4.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_after_hours(const SiteFacts&,
+                                                            std::span<const double> values, int) {
   return std::make_unique<AfterHours>(values[0]);
 }
 
@@ -56,8 +56,8 @@ Effect after_hours() {
                       "Whether the shutdown time follows sunset over the year, and whether chilled "
                       "water follows it."},
                      {"night_setback_missing", "Power at 03:00, long after any late stop."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_after_hours,
+      .bind = bind_after_hours,
   };
 }
 

@@ -52,7 +52,7 @@ class ChillerPartLoad final : public model::hourly::Alteration {
   double design_W_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_chiller_part_load(const SiteFacts&) {
   return {{.name = "idle_power_share",
            .unit = "-",
            .prior = half_normal_below(0.15, 0.6),
@@ -63,8 +63,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_chiller_part_load(const SiteFacts& facts,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<ChillerPartLoad>(values[0], values[1], design_cooling_W(facts));
 }
 
@@ -87,8 +88,8 @@ Effect chiller_part_load() {
                          {"constant_flow_pumps", "The pump power alone, on a mild working day."},
                          {"demand_limit",
                           "Chiller power plotted against its load on the hottest afternoons."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_chiller_part_load,
+          .bind = bind_chiller_part_load};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -25,7 +25,7 @@ class ClockOffset final : public model::hourly::Alteration {
   int meter_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_clock_offset(const SiteFacts&) {
   return {{.name = "offset",
            .unit = "h",
            .prior = TruncatedNormalPrior{.location = 0.0, .sd = 3.0, .min = -12.0, .max = 12.0},
@@ -35,8 +35,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
                     0.25,  0.5,  1.0,  2.0,  3.0,  4.0,  5.0,  6.0,  7.0,  8.0,  12.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int meter) {
+std::unique_ptr<model::hourly::Alteration> bind_clock_offset(const SiteFacts&,
+                                                             std::span<const double> values,
+                                                             int meter) {
   return std::make_unique<ClockOffset>(values[0], meter);
 }
 
@@ -57,8 +58,8 @@ Effect clock_offset() {
                       "The other meters: a schedule moves them all, a wrong clock only this one."},
                      {"after_hours", "The other meters, and the meter's own display of time."},
                      {"dst_misapplied", "Winter weeks: a wrong clock is also wrong then."}},
-      .parameters = parameters,
-      .bind = bind};
+      .parameters = parameters_of_clock_offset,
+      .bind = bind_clock_offset};
 }
 
 }  // namespace recald::diagnosis::effects

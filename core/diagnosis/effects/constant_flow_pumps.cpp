@@ -69,15 +69,15 @@ class ConstantFlowPumps final : public model::hourly::Alteration {
 };
 
 /// Mean of the electricity meter; 10 W/m² if there is none.
-double reference_kW(const SiteFacts& facts) {
+double pump_reference_kW(const SiteFacts& facts) {
   const double electricity_kW = facts.mean_of_kW(metering::Utility::electricity);
   return electricity_kW > 0.0 ? electricity_kW : 0.01 * facts.building.floor_area_m2;
 }
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_constant_flow_pumps(const SiteFacts& facts) {
   return {{.name = "extra_power",
            .unit = "kW",
-           .prior = half_normal(0.05 * reference_kW(facts)),
+           .prior = half_normal(0.05 * pump_reference_kW(facts)),
            .neutral = 0.0},
           {.name = "season",
            .unit = "1: all year, 2: warm months, 3: cold months",
@@ -87,8 +87,9 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .choice = true}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_constant_flow_pumps(const SiteFacts& facts,
+                                                                    std::span<const double> values,
+                                                                    int) {
   return std::make_unique<ConstantFlowPumps>(enabled_months(facts.drivers, values[1]), values[0]);
 }
 
@@ -120,8 +121,8 @@ Effect constant_flow_pumps() {
            {"equipment_step",
             "Whether the dates of the steps match the dates when the control system's log shows "
             "the plant enabled."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_constant_flow_pumps,
+      .bind = bind_constant_flow_pumps,
   };
 }
 

@@ -16,15 +16,16 @@ class ConstantSpeedFans final : public model::hourly::Alteration {
   double constant_share_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_constant_speed_fans(const SiteFacts&) {
   return {{.name = "constant_share",
            .unit = "share of the fans",
            .prior = UniformPrior{0.0, 1.0},
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_constant_speed_fans(const SiteFacts&,
+                                                                    std::span<const double> values,
+                                                                    int) {
   return std::make_unique<ConstantSpeedFans>(values[0]);
 }
 
@@ -51,8 +52,8 @@ Effect constant_speed_fans() {
                      {"equipment_step",
                       "Electricity plotted against chilled water at a fixed hour: with constant "
                       "fans there is no slope. A clamp meter on one fan settles it."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_constant_speed_fans,
+      .bind = bind_constant_speed_fans,
   };
 }
 

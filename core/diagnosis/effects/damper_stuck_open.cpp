@@ -28,7 +28,7 @@ class DamperStuckOpen final : public model::hourly::Alteration {
 };
 
 /// Units in the rooms have no share of outdoor air.
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_damper_stuck_open(const SiteFacts& facts) {
   const bool has_shares = facts.building.air && model::has_reheat_boxes(facts.building);
   return {{.name = "open_share",
            .unit = "share of the daytime outdoor air, or of the supply air",
@@ -42,8 +42,9 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .choice = true}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_damper_stuck_open(const SiteFacts&,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<DamperStuckOpen>(values[0], values[1] > 0.5);
 }
 
@@ -81,8 +82,8 @@ Effect damper_stuck_open() {
                       "The delay behind outdoor temperature: heat to the ground lags by weeks, "
                       "outdoor air not at all."},
                      {"round_the_clock_zone", "Fan power at night: an open damper needs none."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_damper_stuck_open,
+      .bind = bind_damper_stuck_open,
   };
 }
 

@@ -25,12 +25,12 @@ class DeepDrying final : public model::hourly::Alteration {
   double deeper_kg_kg_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_deep_drying(const SiteFacts&) {
   return {{.name = "deeper_drying", .unit = "kg/kg", .prior = half_normal(0.0015), .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_deep_drying(const SiteFacts&,
+                                                            std::span<const double> values, int) {
   return std::make_unique<DeepDrying>(values[0]);
 }
 
@@ -61,8 +61,8 @@ Effect deep_drying() {
            {"fouling",
             "Dry hot days: fouling also costs energy then. A humidity sensor behind the coil "
             "settles it."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_deep_drying,
+      .bind = bind_deep_drying,
   };
 }
 

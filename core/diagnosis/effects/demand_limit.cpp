@@ -79,7 +79,7 @@ double quantile_C(const std::vector<double>& sorted_C, double share) {
   return sorted_C[static_cast<std::size_t>(share * static_cast<double>(sorted_C.size() - 1))];
 }
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_demand_limit(const SiteFacts& facts) {
   const double none = kAbsent;
   std::vector<double> days_C = warmest_afternoons_C(facts.drivers);
   std::erase_if(days_C, [](double day_C) { return day_C < -200.0; });
@@ -102,8 +102,8 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .scan = {quantile_C(days_C, 0.75), quantile_C(days_C, 0.85), quantile_C(days_C, 0.95)}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_demand_limit(const SiteFacts& facts,
+                                                             std::span<const double> values, int) {
   return std::make_unique<DemandLimit>(values[0], values[1], values[2],
                                        warmest_afternoons_C(facts.drivers));
 }
@@ -127,8 +127,8 @@ Effect demand_limit() {
                          {"phase_lost", "A mild afternoon: a lost phase is also missing then."},
                          {"chiller_part_load",
                           "Whether the utility's list of events matches these days."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_demand_limit,
+          .bind = bind_demand_limit};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -32,15 +32,16 @@ double always_share(const model::Building& building) {
   return share < 1.0 ? share : 0.0;
 }
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_demand_ventilation(const SiteFacts&) {
   return {{.name = "demand_share",
            .unit = "share of the outdoor air",
            .prior = UniformPrior{0.0, 1.0},
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_demand_ventilation(const SiteFacts& facts,
+                                                                   std::span<const double> values,
+                                                                   int) {
   return std::make_unique<DemandVentilation>(values[0], always_share(facts.building));
 }
 
@@ -70,8 +71,8 @@ Effect demand_ventilation() {
            {"semester_calendar",
             "Heat during a winter break: without people it rises, with less outdoor air it "
             "falls."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_demand_ventilation,
+      .bind = bind_demand_ventilation,
   };
 }
 

@@ -66,7 +66,7 @@ class DstMisapplied final : public model::hourly::Alteration {
   bool western_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_dst_misapplied(const SiteFacts&) {
   return {{.name = "summer_offset",
            .unit = "h",
            // Only Lord Howe Island has half an hour of summer time.
@@ -76,8 +76,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .choice = true}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_dst_misapplied(const SiteFacts& facts,
+                                                               std::span<const double> values,
+                                                               int) {
   return std::make_unique<DstMisapplied>(facts.drivers, values[0]);
 }
 
@@ -99,8 +100,8 @@ Effect dst_misapplied() {
                           "clock moves both."},
                          {"early_start", "The end of the day: an early start does not change it."},
                          {"clock_offset", "Winter weeks, and the other meters of the logger."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_dst_misapplied,
+          .bind = bind_dst_misapplied};
 }
 
 }  // namespace recald::diagnosis::effects

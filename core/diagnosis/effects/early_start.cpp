@@ -22,7 +22,7 @@ class EarlyStart final : public model::hourly::Alteration {
   double cold_h_K_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_early_start(const SiteFacts&) {
   return {{.name = "lead",
            .unit = "h",
            .prior = half_normal(2.0),
@@ -35,8 +35,8 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {0.0, 0.03, 0.1}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_early_start(const SiteFacts&,
+                                                            std::span<const double> values, int) {
   return std::make_unique<EarlyStart>(values[0], values[1]);
 }
 
@@ -65,8 +65,8 @@ Effect early_start() {
                      {"night_setback_missing",
                       "The start spike grows with the cold; there is none on weekends without a "
                       "start afterwards."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_early_start,
+      .bind = bind_early_start,
   };
 }
 

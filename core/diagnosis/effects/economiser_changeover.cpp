@@ -16,7 +16,7 @@ class EconomiserChangeover final : public model::hourly::Alteration {
   double shift_K_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_economiser_changeover(const SiteFacts&) {
   return {{.name = "shift",
            .unit = "K",
            .prior = TruncatedNormalPrior{.location = 0.0, .sd = 3.0, .min = -10.0, .max = 10.0},
@@ -24,8 +24,8 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {-4.0, -2.0, 2.0, 4.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_economiser_changeover(
+    const SiteFacts&, std::span<const double> values, int) {
   return std::make_unique<EconomiserChangeover>(values[0]);
 }
 
@@ -56,8 +56,8 @@ Effect economiser_changeover() {
            {"supply_reset_missing",
             "Whether heat rises with chilled water. The damper position at 16 to 26 °C settles "
             "it."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_economiser_changeover,
+      .bind = bind_economiser_changeover,
   };
 }
 

@@ -16,15 +16,16 @@ class EconomiserFailed final : public model::hourly::Alteration {
   double failed_share_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_economiser_failed(const SiteFacts&) {
   return {{.name = "failed_share",
            .unit = "share of the free-cooling flow",
            .prior = UniformPrior{0.0, 1.0},
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_economiser_failed(const SiteFacts&,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<EconomiserFailed>(values[0]);
 }
 
@@ -55,8 +56,8 @@ Effect economiser_failed() {
                      {"simultaneous_heating_cooling",
                       "Chilled water at 12 °C with the economiser opened by hand: it falls to near "
                       "zero if the economiser was the cause."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_economiser_failed,
+      .bind = bind_economiser_failed,
   };
 }
 

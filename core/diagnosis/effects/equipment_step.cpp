@@ -48,7 +48,7 @@ class EquipmentStep final : public model::hourly::Alteration {
   double mean_above_W_ = 0.0;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_equipment_step(const SiteFacts& facts) {
   const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.10);
   return {{.name = "power",
            .unit = "kW",
@@ -61,8 +61,9 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .scan = {0.5, 1.0}}};  // 0 is a server room.
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_equipment_step(const SiteFacts& facts,
+                                                               std::span<const double> values,
+                                                               int) {
   return std::make_unique<EquipmentStep>(values[0], values[1], facts.drivers);
 }
 
@@ -86,8 +87,8 @@ Effect equipment_step() {
             "Chilled water after the date: equipment moves it, a lost phase does not."},
            {"vacancy",
             "The number of people in the building: badge or lift counts after the date."}},
-      .parameters = parameters,
-      .bind = bind};
+      .parameters = parameters_of_equipment_step,
+      .bind = bind_equipment_step};
 }
 
 }  // namespace recald::diagnosis::effects

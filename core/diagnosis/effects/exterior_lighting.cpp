@@ -48,14 +48,15 @@ class ExteriorLighting final : public model::hourly::Alteration {
   SharesByHour mean_dark_shares_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_exterior_lighting(const SiteFacts& facts) {
   const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.05);
   return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
           either_share("share_in_plugs")};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_exterior_lighting(const SiteFacts& facts,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<ExteriorLighting>(values[0], values[1], mean_dark_shares(facts.drivers));
 }
 
@@ -78,8 +79,8 @@ Effect exterior_lighting() {
             "The evening switch-on in 15-minute values: does it move with sunset over the weeks?"},
            {"weekend_operation", "Chilled water at the same hours: exterior lights need none."},
            {"dst_misapplied", "The other meters: exterior lights only change electricity."}},
-      .parameters = parameters,
-      .bind = bind};
+      .parameters = parameters_of_exterior_lighting,
+      .bind = bind_exterior_lighting};
 }
 
 }  // namespace recald::diagnosis::effects

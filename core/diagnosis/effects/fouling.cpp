@@ -35,7 +35,7 @@ class Fouling final : public model::hourly::Alteration {
   double cleaned_day_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_fouling(const SiteFacts& facts) {
   const double days = spanned_days(facts.drivers);
   const double none = kAbsent;
   return {{.name = "growth", .unit = "1/a", .prior = half_normal_below(0.08, 1.0), .neutral = 0.0},
@@ -52,8 +52,8 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .scan = {0.3 * days, 0.4 * days, 0.5 * days, 0.6 * days, 0.8 * days, days}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_fouling(const SiteFacts&,
+                                                        std::span<const double> values, int) {
   return std::make_unique<Fouling>(values[0], values[1], values[2]);
 }
 
@@ -76,8 +76,8 @@ Effect fouling() {
                           "not."},
                          {"chiller_part_load",
                           "Chiller power at one load and tower temperature, this year and last."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_fouling,
+          .bind = bind_fouling};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -109,7 +109,7 @@ class GroundCoupling final : public model::hourly::Alteration {
   double lag_days_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_ground_coupling(const SiteFacts& facts) {
   // 0.3 W/(m2 K): a basement without insulation.
   return {{.name = "ground_conductance",
            .unit = "W/K",
@@ -122,8 +122,9 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .scan = {20.0, 40.0, 70.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_ground_coupling(const SiteFacts& facts,
+                                                                std::span<const double> values,
+                                                                int) {
   return std::make_unique<GroundCoupling>(facts, values[0], values[1]);
 }
 
@@ -148,8 +149,8 @@ Effect ground_coupling() {
             "The hot-water sub-meter, or steam on a summer weekend without hot-water use."},
            {"stack_infiltration",
             "Compare heating in spring and in autumn at the same outdoor temperature."}},
-      .parameters = parameters,
-      .bind = bind};
+      .parameters = parameters_of_ground_coupling,
+      .bind = bind_ground_coupling};
 }
 
 }  // namespace recald::diagnosis::effects

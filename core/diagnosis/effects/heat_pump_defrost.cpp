@@ -40,12 +40,13 @@ class HeatPumpDefrost final : public model::hourly::Alteration {
   double pressure_Pa_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_heat_pump_defrost(const SiteFacts&) {
   return {{.name = "cop_loss", .unit = "-", .prior = half_normal_below(0.15, 0.6), .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_heat_pump_defrost(const SiteFacts& facts,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<HeatPumpDefrost>(values[0], facts.drivers.pressure_Pa);
 }
 
@@ -69,8 +70,8 @@ Effect heat_pump_defrost() {
                 "humidifiers run in dry air."},
                {"stack_infiltration",
                 "Electricity at -10 °C: frost costs nothing then, and draught is at its worst."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_heat_pump_defrost,
+          .bind = bind_heat_pump_defrost};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -26,7 +26,7 @@ class Humidifier final : public model::hourly::Alteration {
   double held_kg_kg_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_humidifier(const SiteFacts&) {
   return {
       {.name = "served_share",
        .unit = "share of the outdoor air",
@@ -39,8 +39,8 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
        .scan = {0.004, 0.005, 0.006, 0.007}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_humidifier(const SiteFacts&,
+                                                           std::span<const double> values, int) {
   return std::make_unique<Humidifier>(values[0], values[1]);
 }
 
@@ -70,8 +70,8 @@ Effect humidifier() {
            {"outdoor_air_amount",
             "Cold humid days: outdoor air also costs heat on them, humidification does not."},
            {"stack_infiltration", "Nights with the fans off: no humidifier runs then."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_humidifier,
+      .bind = bind_humidifier,
   };
 }
 

@@ -34,7 +34,7 @@ class HybridWork final : public model::hourly::Alteration {
 
 /// Where it has always been so, the mean is in the profile of the electricity meter, and the days
 /// alone tell.
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_hybrid_work(const SiteFacts&) {
   const auto difference = [](double sd) {
     return TruncatedNormalPrior{.location = 0.0, .sd = sd, .min = -0.4, .max = 0.4};
   };
@@ -44,8 +44,8 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
           {.name = "monday_over_friday", .unit = kUnit, .prior = difference(0.07), .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_hybrid_work(const SiteFacts& facts,
+                                                            std::span<const double> values, int) {
   return std::make_unique<HybridWork>(facts.drivers, values[0], values[1], values[2]);
 }
 
@@ -73,8 +73,8 @@ Effect hybrid_work() {
             "Compare counts of badges, Wi-Fi clients or lift rides by weekday with the air flow."},
            {"missing_holidays",
             "Whether single dates or every Monday and Friday stand out in the daily values."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_hybrid_work,
+      .bind = bind_hybrid_work,
   };
 }
 

@@ -78,7 +78,7 @@ class MissingHolidays final : public model::hourly::Alteration {
   double plant_share_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_missing_holidays(const SiteFacts&) {
   return {{.name = "shut_share",
            .unit = "share of the building",
            .prior = UniformPrior{0.0, 1.0},
@@ -95,8 +95,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .choice = true}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_missing_holidays(const SiteFacts& facts,
+                                                                 std::span<const double> values,
+                                                                 int) {
   return std::make_unique<MissingHolidays>(facts.drivers, values[0], values[1], values[2]);
 }
 
@@ -125,8 +126,8 @@ Effect missing_holidays() {
            {"semester_calendar", "Length: term breaks last weeks, holidays one day or two."},
            {"weekend_operation",
             "Ordinary Saturdays and Sundays: missing holidays do not change them."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_missing_holidays,
+      .bind = bind_missing_holidays,
   };
 }
 

@@ -17,15 +17,15 @@ class NightSetBackMissing final : public model::hourly::Alteration {
   double missing_share_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_night_setback_missing(const SiteFacts&) {
   return {{.name = "missing_share",
            .unit = "share of the set-back",
            .prior = UniformPrior{0.0, 1.0},
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_night_setback_missing(
+    const SiteFacts&, std::span<const double> values, int) {
   return std::make_unique<NightSetBackMissing>(values[0]);
 }
 
@@ -59,8 +59,8 @@ Effect night_setback_missing() {
                      {"after_hours",
                       "Fan power at 02:00: later hours end at some time in the evening, a missing "
                       "set-back lasts until morning and all weekend."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_night_setback_missing,
+      .bind = bind_night_setback_missing,
   };
 }
 

@@ -16,15 +16,16 @@ class OutdoorAirAmount final : public model::hourly::Alteration {
   double change_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_outdoor_air_amount(const SiteFacts&) {
   return {{.name = "change",
            .unit = "share of the drawn outdoor air",
            .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.4, .min = -0.9, .max = 1.5},
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_outdoor_air_amount(const SiteFacts&,
+                                                                   std::span<const double> values,
+                                                                   int) {
   return std::make_unique<OutdoorAirAmount>(values[0]);
 }
 
@@ -52,8 +53,8 @@ Effect outdoor_air_amount() {
             "Compare weather between 8 and 18 °C with hot and cold weather: the minimum amount "
             "matters in hot and cold weather."},
            {"deep_drying", "Heat in winter: outdoor air costs heat too, drying does not."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_outdoor_air_amount,
+      .bind = bind_outdoor_air_amount,
   };
 }
 

@@ -26,7 +26,7 @@ class PhaseLost final : public model::hourly::Alteration {
 /// 1/3 one phase lost; 2/3 two lost, or one transformer reversed (1 - 2/3 = 1 - 2 x 1/3); 1 all
 /// lost. Phases are rarely even, so values in between are possible; much less than a third is not a
 /// phase but a change of load, and the prior excludes it.
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_phase_lost(const SiteFacts&) {
   return {{.name = "lost_share",
            .unit = "-",
            .prior = TruncatedNormalPrior{.location = 1.0 / 3.0, .sd = 0.1, .min = 0.0, .max = 1.0},
@@ -34,8 +34,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {1.0 / 3.0, 2.0 / 3.0, 1.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int meter) {
+std::unique_ptr<model::hourly::Alteration> bind_phase_lost(const SiteFacts&,
+                                                           std::span<const double> values,
+                                                           int meter) {
   return std::make_unique<PhaseLost>(values[0], meter);
 }
 
@@ -58,8 +59,8 @@ Effect phase_lost() {
                           "Chilled water and heat after the date: a lost phase changes neither."},
                          {"scale_fault",
                           "The currents of the three phases, measured with a clamp meter."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_phase_lost,
+          .bind = bind_phase_lost};
 }
 
 }  // namespace recald::diagnosis::effects

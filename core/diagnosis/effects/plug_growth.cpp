@@ -26,15 +26,15 @@ class PlugGrowth final : public model::hourly::Alteration {
 };
 
 /// Bounds of the prior keep plugs positive over records of up to six years.
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_plug_growth(const SiteFacts&) {
   return {{.name = "growth",
            .unit = "1/a",
            .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.1, .min = -0.3, .max = 0.3},
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_plug_growth(const SiteFacts& facts,
+                                                            std::span<const double> values, int) {
   return std::make_unique<PlugGrowth>(values[0], 0.5 * spanned_days(facts.drivers));
 }
 
@@ -54,8 +54,8 @@ Effect plug_growth() {
               {{"equipment_step",
                 "Electricity at night over the year: drift grows steadily, a step stays constant."},
                {"fouling", "Electricity on winter weekends: plugs also drift then."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_plug_growth,
+          .bind = bind_plug_growth};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -18,15 +18,16 @@ class RoundTheClockZone final : public model::hourly::Alteration {
   double floor_share_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_round_the_clock_zone(const SiteFacts&) {
   return {{.name = "floor_share",
            .unit = "share of the daytime rooms",
            .prior = UniformPrior{0.0, 0.6},
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_round_the_clock_zone(const SiteFacts&,
+                                                                     std::span<const double> values,
+                                                                     int) {
   return std::make_unique<RoundTheClockZone>(values[0]);
 }
 
@@ -54,8 +55,8 @@ Effect round_the_clock_zone() {
             "Electricity at night: set-points alone hardly change it, running fans do."},
            {"constant_flow_pumps",
             "Whether the extra electricity at night also shows in chilled water and heat."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_round_the_clock_zone,
+      .bind = bind_round_the_clock_zone,
   };
 }
 

@@ -23,15 +23,16 @@ class ScaleFault final : public model::hourly::Alteration {
 };
 
 /// Tenfold slips and wrong units are found on arrival of the data; this covers the rest.
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_scale_fault(const SiteFacts&) {
   return {{.name = "scale",
            .unit = "-",
            .prior = LogNormalPrior{.median = 1.0, .log_sd = 0.1, .min = 0.3, .max = 3.0},
            .neutral = 1.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int meter) {
+std::unique_ptr<model::hourly::Alteration> bind_scale_fault(const SiteFacts&,
+                                                            std::span<const double> values,
+                                                            int meter) {
   return std::make_unique<ScaleFault>(values[0], meter);
 }
 
@@ -53,8 +54,8 @@ Effect scale_fault() {
                           "The ratio of metered to expected by day and by night: with a wrong "
                           "scale it is the same."},
                          {"phase_lost", "The currents of the three phases."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_scale_fault,
+          .bind = bind_scale_fault};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -38,7 +38,7 @@ class SeasonalHotWater final : public model::hourly::Alteration {
   double loop_loss_kW_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_seasonal_hot_water(const SiteFacts& facts) {
   // Taps and loop about alike: little is lost at a time, but day and night.
   const double share_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.06);
   return {
@@ -47,8 +47,9 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
       {.name = "loop_loss", .unit = "kW", .prior = half_normal(share_kW), .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_seasonal_hot_water(const SiteFacts&,
+                                                                   std::span<const double> values,
+                                                                   int) {
   return std::make_unique<SeasonalHotWater>(values[0], values[1], values[2]);
 }
 
@@ -72,8 +73,8 @@ Effect seasonal_hot_water() {
                      {"ground_coupling", "The hot-water sub-meter, or steam on a summer weekend."},
                      {"humidifier",
                       "Compare steam on damp and on dry cold days at the same temperature."}},
-      .parameters = parameters,
-      .bind = bind};
+      .parameters = parameters_of_seasonal_hot_water,
+      .bind = bind_seasonal_hot_water};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -79,7 +79,7 @@ class SemesterCalendar final : public model::hourly::Alteration {
   double absent_share_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_semester_calendar(const SiteFacts&) {
   return {{.name = "absent_share",
            .unit = "share of the people",
            .prior = UniformPrior{0.0, 0.7},
@@ -92,8 +92,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .choice = true}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_semester_calendar(const SiteFacts& facts,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<SemesterCalendar>(facts.drivers, values[0], values[1]);
 }
 
@@ -119,8 +120,8 @@ Effect semester_calendar() {
                      {"solar_gain_change",
                       "Electricity: shading does not change it, missing people do. The academic "
                       "calendar settles it."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_semester_calendar,
+      .bind = bind_semester_calendar,
   };
 }
 

@@ -38,7 +38,7 @@ class ServerRoom final : public model::hourly::Alteration {
   double share_in_plugs_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_server_room(const SiteFacts& facts) {
   const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.20);
   const double none = kAbsent;
   const UniformPrior any_share{.min = 0.0, .max = 1.0};
@@ -55,8 +55,8 @@ std::vector<EffectParameter> parameters(const SiteFacts& facts) {
            .scan = {0.0, 1.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_server_room(const SiteFacts&,
+                                                            std::span<const double> values, int) {
   return std::make_unique<ServerRoom>(values[0], values[1], values[2]);
 }
 
@@ -81,8 +81,8 @@ Effect server_room() {
                       "settles it."},
                      {"equipment_step",
                       "A clamp meter on the room's feeder, and cooling on winter nights."}},
-      .parameters = parameters,
-      .bind = bind};
+      .parameters = parameters_of_server_room,
+      .bind = bind_server_room};
 }
 
 }  // namespace recald::diagnosis::effects

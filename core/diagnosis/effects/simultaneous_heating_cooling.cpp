@@ -25,23 +25,23 @@ class SimultaneousHeatingCooling final : public model::hourly::Alteration {
 };
 
 /// Mean of chilled water; with an own chiller, that of heat; else 10 W/m².
-double reference_kW(const SiteFacts& facts) {
+double reheat_reference_kW(const SiteFacts& facts) {
   const double cooling_kW = facts.mean_of_kW(metering::Utility::chilled_water);
   if (cooling_kW > 0.0) return cooling_kW;
   const double heating_kW = facts.mean_of_kW(metering::Utility::heating);
   return heating_kW > 0.0 ? heating_kW : 0.01 * facts.building.floor_area_m2;
 }
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_simultaneous_heating_cooling(const SiteFacts& facts) {
   // What leaks. Only what leaks beyond the heat that is wanted is waste.
   return {{.name = "wasted_heat",
            .unit = "kW",
-           .prior = half_normal(0.1 * reference_kW(facts)),
+           .prior = half_normal(0.1 * reheat_reference_kW(facts)),
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_simultaneous_heating_cooling(
+    const SiteFacts&, std::span<const double> values, int) {
   return std::make_unique<SimultaneousHeatingCooling>(values[0]);
 }
 
@@ -76,8 +76,8 @@ Effect simultaneous_heating_cooling() {
            {"scale_fault",
             "Whether an error of a single meter explains it: close the heating valves for an hour "
             "and check that both meters fall."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_simultaneous_heating_cooling,
+      .bind = bind_simultaneous_heating_cooling,
   };
 }
 

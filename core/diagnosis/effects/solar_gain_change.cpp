@@ -31,7 +31,7 @@ class SolarGainChange final : public model::hourly::Alteration {
   double above_W_m2_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_solar_gain_change(const SiteFacts&) {
   return {{.name = "solar_reduction",
            .unit = "-",
            .prior = UniformPrior{.min = -0.5, .max = 0.5},
@@ -43,8 +43,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {0.0, 250.0, 500.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_solar_gain_change(const SiteFacts&,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<SolarGainChange>(values[0], values[1]);
 }
 
@@ -69,8 +70,8 @@ Effect solar_gain_change() {
                       "Compare sunny with cloudy weekends at the same temperature."},
                      {"economiser_failed",
                       "The mixed-air temperature at 15 °C outdoors on an overcast working day."}},
-      .parameters = parameters,
-      .bind = bind};
+      .parameters = parameters_of_solar_gain_change,
+      .bind = bind_solar_gain_change};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -39,12 +39,13 @@ class StackInfiltration final : public model::hourly::Alteration {
   double height_m_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_stack_infiltration(const SiteFacts&) {
   return {{.name = "stack_factor", .unit = "-", .prior = half_normal(0.5), .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_stack_infiltration(const SiteFacts& facts,
+                                                                   std::span<const double> values,
+                                                                   int) {
   const double height_m = facts.building.storeys * facts.building.storey_height_m;
   return std::make_unique<StackInfiltration>(values[0], height_m);
 }
@@ -70,8 +71,8 @@ Effect stack_infiltration() {
             "Room temperature at 3 o'clock at night: with a set-back it falls, whatever the "
             "draught."},
            {"wind_infiltration", "Compare heating on calm and on windy nights, both very cold."}},
-      .parameters = parameters,
-      .bind = bind};
+      .parameters = parameters_of_stack_infiltration,
+      .bind = bind_stack_infiltration};
 }
 
 }  // namespace recald::diagnosis::effects

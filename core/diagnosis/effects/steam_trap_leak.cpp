@@ -23,13 +23,14 @@ class SteamTrapLeak final : public model::hourly::Alteration {
   double loss_kW_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts& facts) {
+std::vector<EffectParameter> parameters_of_steam_trap_leak(const SiteFacts& facts) {
   const double sd_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.15);
   return {{.name = "heat_loss", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_steam_trap_leak(const SiteFacts&,
+                                                                std::span<const double> values,
+                                                                int) {
   return std::make_unique<SteamTrapLeak>(values[0]);
 }
 
@@ -51,8 +52,8 @@ Effect steam_trap_leak() {
                 "Chilled water on the same nights: reheat raises both, a leak only the heat."},
                {"scale_fault",
                 "Compare the ratio of metered to expected heat in January and in July."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_steam_trap_leak,
+          .bind = bind_steam_trap_leak};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -29,7 +29,7 @@ class StuckMeter final : public model::hourly::Alteration {
   int meter_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_stuck_meter(const SiteFacts&) {
   const UniformPrior any_share{.min = 0.0, .max = 1.0};
   return {{.name = "stuck_share", .unit = "-", .prior = any_share, .neutral = 0.0},
           {.name = "level_share",
@@ -39,8 +39,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {0.0, 1.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int meter) {
+std::unique_ptr<model::hourly::Alteration> bind_stuck_meter(const SiteFacts&,
+                                                            std::span<const double> values,
+                                                            int meter) {
   return std::make_unique<StuckMeter>(values[0], values[1], meter);
 }
 
@@ -60,8 +61,8 @@ Effect stuck_meter() {
           .of_one_meter = true,
           .confusable = {{"vacancy", "The other meters: in an empty building they also fall."},
                          {"missing_holidays", "The other meters on that date."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_stuck_meter,
+          .bind = bind_stuck_meter};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -29,7 +29,7 @@ class SupplyResetMissing final : public model::hourly::Alteration {
   double balance_C_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_supply_reset_missing(const SiteFacts&) {
   return {{.name = "reset_slope", .unit = "K/K", .prior = half_normal(0.25), .neutral = 0.0},
           {.name = "balance_temperature",
            .unit = "degC",
@@ -38,8 +38,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {14.0, 18.0, 22.0}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_supply_reset_missing(const SiteFacts&,
+                                                                     std::span<const double> values,
+                                                                     int) {
   return std::make_unique<SupplyResetMissing>(values[0], values[1]);
 }
 
@@ -70,8 +71,8 @@ Effect supply_reset_missing() {
            {"economiser_failed",
             "Heat on the same mild days: only the missing reset raises it. A supply-air sensor "
             "over a week settles it."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_supply_reset_missing,
+      .bind = bind_supply_reset_missing,
   };
 }
 

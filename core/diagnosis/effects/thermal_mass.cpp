@@ -19,15 +19,15 @@ class ThermalMass final : public model::hourly::Alteration {
   double factor_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_thermal_mass(const SiteFacts&) {
   return {{.name = "mass_factor",
            .unit = "-",
            .prior = LogNormalPrior{.median = 1.0, .log_sd = 0.5, .min = 0.2, .max = 5.0},
            .neutral = 1.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_thermal_mass(const SiteFacts&,
+                                                             std::span<const double> values, int) {
   return std::make_unique<ThermalMass>(values[0]);
 }
 
@@ -46,8 +46,8 @@ Effect thermal_mass() {
                          {"night_setback_missing",
                           "Room temperature after a clear night: with a heavy mass it falls "
                           "slowly, with a missing set-back it stays constant."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_thermal_mass,
+          .bind = bind_thermal_mass};
 }
 
 }  // namespace recald::diagnosis::effects

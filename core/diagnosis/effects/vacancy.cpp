@@ -20,15 +20,15 @@ class Vacancy final : public model::hourly::Alteration {
   double absent_share_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_vacancy(const SiteFacts&) {
   return {{.name = "absent_share",
            .unit = "share of the people",
            .prior = UniformPrior{0.0, 1.0},
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_vacancy(const SiteFacts& facts,
+                                                        std::span<const double> values, int) {
   return std::make_unique<Vacancy>(facts.drivers, values[0]);
 }
 
@@ -55,8 +55,8 @@ Effect vacancy() {
                      {"phase_lost",
                       "Chilled water: a lost phase of the electricity meter does not show there."},
                      {"missing_holidays", "The length: single days or many weeks."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_vacancy,
+      .bind = bind_vacancy,
   };
 }
 

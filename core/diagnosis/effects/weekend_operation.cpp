@@ -30,7 +30,7 @@ class WeekendOperation final : public model::hourly::Alteration {
   double sunday_share_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_weekend_operation(const SiteFacts&) {
   return {{.name = "saturday_share",
            .unit = "share of a weekday's plant",
            .prior = UniformPrior{0.0, 1.0},
@@ -41,8 +41,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .neutral = 0.0}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts& facts,
-                                                std::span<const double> values, int) {
+std::unique_ptr<model::hourly::Alteration> bind_weekend_operation(const SiteFacts& facts,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<WeekendOperation>(facts.building.set_points, values[0], values[1]);
 }
 
@@ -75,8 +76,8 @@ Effect weekend_operation() {
             "follow the sun, the plant follows the clock."},
            {"solar_gain_change",
             "Compare sunny with cloudy weekends at the same outdoor temperature."}},
-      .parameters = parameters,
-      .bind = bind,
+      .parameters = parameters_of_weekend_operation,
+      .bind = bind_weekend_operation,
   };
 }
 

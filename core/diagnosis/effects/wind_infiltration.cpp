@@ -25,7 +25,7 @@ class WindInfiltration final : public model::hourly::Alteration {
   double exponent_;
 };
 
-std::vector<EffectParameter> parameters(const SiteFacts&) {
+std::vector<EffectParameter> parameters_of_wind_infiltration(const SiteFacts&) {
   return {{.name = "wind_factor", .unit = "1/(m/s)^n", .prior = half_normal(0.2), .neutral = 0.0},
           {.name = "wind_exponent",
            .unit = "-",
@@ -34,8 +34,9 @@ std::vector<EffectParameter> parameters(const SiteFacts&) {
            .scan = {1.0, 1.33}}};
 }
 
-std::unique_ptr<model::hourly::Alteration> bind(const SiteFacts&, std::span<const double> values,
-                                                int) {
+std::unique_ptr<model::hourly::Alteration> bind_wind_infiltration(const SiteFacts&,
+                                                                  std::span<const double> values,
+                                                                  int) {
   return std::make_unique<WindInfiltration>(values[0], values[1]);
 }
 
@@ -56,8 +57,8 @@ Effect wind_infiltration() {
                 "Heating on calm, very cold nights: stack draught remains, wind draught does not."},
                {"damper_stuck_open",
                 "The outdoor damper position with the fans off, on a calm and on a windy night."}},
-          .parameters = parameters,
-          .bind = bind};
+          .parameters = parameters_of_wind_infiltration,
+          .bind = bind_wind_infiltration};
 }
 
 }  // namespace recald::diagnosis::effects
