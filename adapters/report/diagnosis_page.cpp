@@ -7,7 +7,7 @@
 namespace recald::report {
 namespace {
 
-struct Part {
+struct DiagnosisPart {
   std::string_view id;
   std::string_view link_text;
   void (*write)(Html&, const DiagnosisData&);
@@ -17,7 +17,7 @@ void write_origin_section(Html& html, const DiagnosisData& data) {
   write_provenance(html, data.provenance, data.site.time_zone, data.generated_at);
 }
 
-constexpr Part kParts[] = {
+constexpr DiagnosisPart kDiagnosisParts[] = {
     {"outcome", "In short", write_outcome_section},
     {"located", "Where", write_located_section},
     {"maps", "Maps", write_map_section},
@@ -33,7 +33,7 @@ constexpr Part kParts[] = {
 
 std::string render_diagnosis(const DiagnosisData& data) {
   std::vector<PagePart> parts;
-  for (const Part& part : kParts) {
+  for (const DiagnosisPart& part : kDiagnosisParts) {
     Html html;
     part.write(html, data);
     parts.push_back({part.id, part.link_text, html.str()});

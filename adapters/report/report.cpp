@@ -8,13 +8,13 @@
 namespace recald::report {
 namespace {
 
-struct Part {
+struct ReportPart {
   std::string_view id;
   std::string_view link_text;
   void (*write)(Html&, const ReportData&);
 };
 
-constexpr Part kParts[] = {
+constexpr ReportPart kReportParts[] = {
     {"verdict", "In short", write_verdict_section},
     {"data", "Data", write_data_section},
     {"fit", "Fit", write_fit_section},
@@ -32,7 +32,7 @@ constexpr Part kParts[] = {
 
 std::string render_report(const ReportData& data) {
   std::vector<PagePart> parts;
-  for (const Part& part : kParts) {
+  for (const ReportPart& part : kReportParts) {
     Html html;
     part.write(html, data);
     parts.push_back({part.id, part.link_text, html.str()});

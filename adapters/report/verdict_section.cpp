@@ -13,12 +13,12 @@ namespace recald::report {
 namespace {
 
 /// A word, a sign and a class, so that the meaning never depends on colour alone.
-struct Mark {
+struct VerdictMark {
   std::string_view word;
   std::string_view css_class;
 };
 
-Mark severity_mark(Severity severity) {
+VerdictMark severity_mark(Severity severity) {
   switch (severity) {
     case Severity::info:
       return {"Note", "note"};
@@ -73,7 +73,7 @@ constexpr std::size_t kNoticesShown = 5;
 void write_notice_list(Html& html, std::span<const Notice> notices) {
   html.markup("<ul class=\"notices\">\n");
   for (const Notice& notice : notices) {
-    const Mark mark = severity_mark(notice.severity);
+    const VerdictMark mark = severity_mark(notice.severity);
     html.markup(fmt::format("<li class=\"{}\">", mark.css_class))
         .element("span", mark.word, "badge")
         .markup("<div>\n")

@@ -38,10 +38,6 @@ Result<void> check_design(const DesignRuns& design, const CalibrationProblem& pr
                      std::to_string(columns) + " outputs and months");
 }
 
-void append(Findings& all, Findings more) {
-  std::move(more.begin(), more.end(), std::back_inserter(all));
-}
-
 void add_posterior_findings(const CalibrationProblem& problem, Calibration& c) {
   append(c.findings, edge_findings(problem.parameters, c.chains));
   append(c.findings, conflict_findings(c.hyperparameters[0], c.hyper_prior.discrepancy_precision));
@@ -138,7 +134,7 @@ Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
   }
   result.thinned = thin(result.chains, options.thinned_draws);
   add_posterior_findings(problem, result);
-  append(result.findings, std::move(sampled->findings));
+  append(result.findings, sampled->findings);
   check_model(*posterior, sampled->points, problem, context, result);
   if (options.predictive) {
     auto predictions = predict_points(*posterior, result.chains, context);

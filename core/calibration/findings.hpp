@@ -35,4 +35,8 @@ struct Finding {
 
 using Findings = std::vector<Finding>;
 
+inline void append(Findings& all, const Findings& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
 }  // namespace recald::calibration

@@ -152,10 +152,6 @@ class Chains {
   bool jumps_ = false;
 };
 
-void append(Findings& all, Findings more) {
-  std::move(more.begin(), more.end(), std::back_inserter(all));
-}
-
 struct LogMean {
   double value;
   double standard_error;

@@ -13,7 +13,7 @@ namespace {
 
 // Of the prior's range: a value this near its upper bound counts as limited by it.
 constexpr double kNearEnd = 0.05;
-constexpr FitOptions kFine{.iterations_max = 40};
+constexpr FitOptions kFineFit{.iterations_max = 40};
 
 /// sum |with - without| / sum without, for the meter where it is largest.
 double largest_move(const Eigen::ArrayXXd& with_kW, const Eigen::ArrayXXd& without_kW) {
@@ -97,7 +97,7 @@ class Rivals {
     for (const Explanation& e : rivals_) {
       Eigen::VectorXd from = ground_.none.scores;
       from.head(parameters()) = e.fit.scores.head(parameters());
-      auto base = fit_jointly(predictor_, ground_.context(site_), Candidate{}, from, kFine);
+      auto base = fit_jointly(predictor_, ground_.context(site_), Candidate{}, from, kFineFit);
       if (!base) return tl::unexpected(base.error());
       if (!is_better(*base, ground_.none)) continue;
       ground_.none = std::move(*base);
@@ -143,7 +143,7 @@ class Rivals {
 
   Result<JointFit> fit_of(const Explanation& e, const Eigen::VectorXd& from) {
     auto fit =
-        fit_jointly(predictor_, ground_.context(site_), candidates_[e.candidate], from, kFine);
+        fit_jointly(predictor_, ground_.context(site_), candidates_[e.candidate], from, kFineFit);
     if (fit) fit->jacobian.resize(0, 0);  // the largest part of a fit, and not needed any more
     return fit;
   }

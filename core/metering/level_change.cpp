@@ -16,7 +16,7 @@ constexpr std::size_t kStepMonths = 3;
 constexpr double kBeyondWeather = 2.0;  // times the largest month ever
 constexpr std::chrono::months kRowWithin{6};
 
-double median_of(std::vector<double> values) {
+double median_log_ratio(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -94,7 +94,7 @@ class LevelWatch {
   [[nodiscard]] Scatter scatter() const {
     const double n0 = options_.typical_scatter_months;
     const auto n = static_cast<double>(learned_.size());
-    const double centre = learned_.empty() ? 0.0 : median_of(learned_) * n / (n + n0);
+    const double centre = learned_.empty() ? 0.0 : median_log_ratio(learned_) * n / (n + n0);
     double squares = n0 * options_.typical_scatter * options_.typical_scatter;
     for (const double r : learned_) squares += (r - centre) * (r - centre);
     return {centre, std::sqrt(squares / (n0 + n))};
@@ -103,7 +103,7 @@ class LevelWatch {
   void judge(Compared month) {
     const Scatter expected = scatter();
     month.z = (month.log_ratio - expected.centre) / expected.scale;
-    month.step = recent_.empty() ? month.log_ratio : month.log_ratio - median_of(recent_);
+    month.step = recent_.empty() ? month.log_ratio : month.log_ratio - median_log_ratio(recent_);
     if (std::abs(month.step) > std::log(options_.scale_factor_min)) {
       judge_step(month, expected.scale);
     } else {

@@ -12,10 +12,10 @@ namespace recald::daemon {
 namespace {
 
 /// Says once how long all of it will take; on a terminal the progress line does.
-class Estimate {
+class RunsEstimate {
  public:
   /// @param threads  Runs at a time: the first of them end together.
-  Estimate(unsigned threads, const Console& console)
+  RunsEstimate(unsigned threads, const Console& console)
       : console_{console},
         at_a_time_{static_cast<int>(threads > 0 ? threads : std::thread::hardware_concurrency())} {}
 
@@ -53,7 +53,7 @@ tl::expected<MadeRuns, int> make_runs_aloud(const MakeRuns& make, unsigned threa
   const InterruptGuard guard;
   auto made = [&] {
     ProgressLine line{console};
-    Estimate estimate{threads, console};
+    RunsEstimate estimate{threads, console};
     return make(system::parallel_for(threads), [&](int done, int total) {
       estimate.show(done, total);
       if (total > 0) line.show({calibration::Progress::Stage::design, 0, done, total});

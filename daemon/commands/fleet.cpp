@@ -29,7 +29,7 @@ std::string who() {
   return user != nullptr ? user->pw_name : fmt::format("user {}", ::geteuid());
 }
 
-metering::Instant now() {
+metering::Instant wall_time() {
   return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
 }
 
@@ -100,7 +100,7 @@ int run_fleet_add(const FleetAddArguments& arguments, const Console& console) {
       exit_code = console.fail(fmt::format("{}: {}", file.string(), description.error().message));
       continue;
     }
-    description->calibrate_from = metering::previous_month(site->calendar.month_of(now()));
+    description->calibrate_from = metering::previous_month(site->calendar.month_of(wall_time()));
     // What is not said now is as it was.
     const auto before = std::ranges::find(
         *known, description->id, [](const record::RecordedSite& one) { return one.site.id; });

@@ -14,7 +14,6 @@ namespace recald::daemon {
 namespace {
 
 using modbus::RegisterField;
-using modbus::RegisterType;
 using modbus::ValueFormat;
 using modbus::WordOrder;
 
@@ -71,14 +70,14 @@ class Trial {
   LoadLimits limits_;
 };
 
-std::optional<RegisterType> with_a_sign(RegisterType type) {
+std::optional<modbus::RegisterType> with_a_sign(modbus::RegisterType type) {
   switch (type) {
-    case RegisterType::u16:
-      return RegisterType::i16;
-    case RegisterType::u32:
-      return RegisterType::i32;
-    case RegisterType::u64:
-      return RegisterType::i64;
+    case modbus::RegisterType::u16:
+      return modbus::RegisterType::i16;
+    case modbus::RegisterType::u32:
+      return modbus::RegisterType::i32;
+    case modbus::RegisterType::u64:
+      return modbus::RegisterType::i64;
     default:
       return {};
   }
@@ -148,7 +147,7 @@ std::string coarseness_of(const RegisterField& field, double resolution, double 
   return fmt::format(
       "'{}' counts in steps of {:.4g} kWh, {:.2g} % of the energy of {:.4g} kW in {} minutes; {}",
       field.name, step_kWh, 100.0 * step_kWh / interval_kWh, load_kW, interval.count() / 60,
-      field.format.type == RegisterType::f32
+      field.format.type == modbus::RegisterType::f32
           ? "a float loses resolution as it grows, so use the integer or 64-bit copy if there is "
             "one"
           : "its intervals will be inaccurate, and its peaks even more so");

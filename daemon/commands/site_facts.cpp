@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 using Facts = std::vector<Fact>;
 
-metering::Instant now() {
+metering::Instant time_of_check() {
   return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
 }
 
@@ -134,7 +134,7 @@ Facts backups(const SiteConfig& site) {
   const auto files = backups_of(site.store);
   Fact fact{"backups", fmt::format("{}", files.size())};
   if (!files.empty()) {
-    const auto age = now() - std::chrono::sys_days{day_of(site.store, files.front())};
+    const auto age = time_of_check() - std::chrono::sys_days{day_of(site.store, files.front())};
     const auto days = std::chrono::floor<std::chrono::days>(age).count();
     fact.value +=
         fmt::format(", the newest of {}", metering::to_string(day_of(site.store, files.front())));
@@ -233,10 +233,10 @@ Fact certificate(const fs::path& file) {
   if (!end) return stopping("[http] certificate_file", "cannot be used", end.error().message);
   Fact fact{"[http] certificate_file", "ends " + metering::to_string(*end)};
   constexpr std::chrono::days kSoon{30};
-  if (*end < now()) {
+  if (*end < time_of_check()) {
     return stopping(fact.name, fact.value, "the certificate has ended; put a new one in its place");
   }
-  if (*end < now() + kSoon) fact.problem = "the certificate ends within 30 days; get a new one";
+  if (*end < time_of_check() + kSoon) fact.problem = "the certificate ends within 30 days; get a new one";
   return fact;
 }
 

@@ -19,7 +19,7 @@
 namespace recald::daemon {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{100};
+constexpr std::chrono::milliseconds kWorkerLook{100};
 
 std::string host_name() {
   std::array<char, 256> name{};
@@ -74,7 +74,7 @@ int run_worker(const WorkerArguments& arguments, const Console& console) {
     });
   }
   const auto is_idle = [&] { return arguments.until_idle && running == 0; };
-  while (!guard.interrupted() && !is_idle()) std::this_thread::sleep_for(kLook);
+  while (!guard.interrupted() && !is_idle()) std::this_thread::sleep_for(kWorkerLook);
   return kSuccess;
 }
 

@@ -10,7 +10,7 @@ namespace recald::simulators {
 namespace {
 
 constexpr double kBareTrees = 0.35;  ///< Relative to the shade of trees in leaf.
-constexpr double kColdestDay = 20.0;
+constexpr double kLowestSunDay = 20.0;
 
 /// Trees that have grown or were felled, films on panes, blinds that stay up or down. Each facade
 /// has its own share, trees follow the season, and blinds the people's habits.
@@ -26,7 +26,7 @@ class SolarGainChange final : public HiddenEffect {
 
   void plan(metering::Day day, Timetable& /*timetable*/) override {
     // In leaf from some time after the last frost until late autumn.
-    const double leaves = ramp(yearly_wave(day, kColdestDay, latitude_deg_), -0.3, 0.3);
+    const double leaves = ramp(yearly_wave(day, kLowestSunDay, latitude_deg_), -0.3, 0.3);
     const double trees = kBareTrees + (1.0 - kBareTrees) * leaves;
     const double mood = std::clamp(1.0 + 0.1 * mood_.advance(settings_.rng), 0.75, 1.25);
     today_ = trees_share_ * trees + (1.0 - trees_share_) * mood;

@@ -6,8 +6,8 @@
 namespace recald::simulators {
 namespace {
 
-constexpr double kSlotsPerHour = 4.0;
-constexpr double kSlotsPerYear = 365.25 * 24.0 * kSlotsPerHour;
+constexpr double kFaultSlotsPerHour = 4.0;
+constexpr double kSlotsPerYear = 365.25 * 24.0 * kFaultSlotsPerHour;
 constexpr std::size_t kFirstPossible = 48;
 
 /// Keeps faults apart, with a good reading between any two, so that each remains as declared.
@@ -43,7 +43,7 @@ class Agenda {
 std::size_t draw_count(const FaultHabit& habit, Rng& rng) {
   const double u = rng.uniform();
   const double hours = habit.shortest_h + (habit.longest_h - habit.shortest_h) * u * u;
-  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(hours * kSlotsPerHour)));
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(hours * kFaultSlotsPerHour)));
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ std::vector<Fault> plan_faults(const std::vector<FaultHabit>& habits, int lost_m
   Agenda agenda(slots);
   for (int i = 0; i < lost_months; ++i) {
     const double days = rng.uniform(17.0, 27.0);
-    agenda.place(FaultKind::gap, static_cast<std::size_t>(days * 24.0 * kSlotsPerHour), rng);
+    agenda.place(FaultKind::gap, static_cast<std::size_t>(days * 24.0 * kFaultSlotsPerHour), rng);
   }
   for (const FaultHabit& habit : habits) {
     const double expected = habit.per_year * static_cast<double>(slots) / kSlotsPerYear;

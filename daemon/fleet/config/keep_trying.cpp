@@ -11,8 +11,8 @@
 namespace recald::daemon {
 namespace {
 
-constexpr std::chrono::seconds kWaitMin{5};
-constexpr std::chrono::seconds kWaitMax{60};
+constexpr std::chrono::seconds kRetryMin{5};
+constexpr std::chrono::seconds kRetryMax{60};
 
 }  // namespace
 
@@ -20,20 +20,20 @@ void keep_trying(const std::string& meanwhile, const std::function<Result<void>(
                  const TellWords& tell, const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any stopped;
-  auto wait = kWaitMin;
+  auto wait = kRetryMin;
   std::string said;
   while (!stop.stop_requested()) {
     const auto begin = std::chrono::steady_clock::now();
     const Result<void> ended = work();
     if (ended || stop.stop_requested()) return;
-    const bool has_worked = std::chrono::steady_clock::now() - begin > kWaitMax;
-    if (has_worked) wait = kWaitMin;
+    const bool has_worked = std::chrono::steady_clock::now() - begin > kRetryMax;
+    if (has_worked) wait = kRetryMin;
     if (std::exchange(said, ended.error().message) != ended.error().message || has_worked) {
       tell(fmt::format("{}: {}; trying again", meanwhile, said));
     }
     std::unique_lock lock{mutex};
     stopped.wait_for(lock, stop, wait, [] { return false; });
-    wait = std::min(2 * wait, kWaitMax);
+    wait = std::min(2 * wait, kRetryMax);
   }
 }
 

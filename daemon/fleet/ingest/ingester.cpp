@@ -27,11 +27,11 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kLook{500};
-constexpr seconds kPublishMax{20};
+constexpr milliseconds kLookForBatches{500};
+constexpr seconds kAnswerMax{20};
 constexpr std::size_t kAtOnce = 32;  ///< Batches between two rounds of telling their gateways.
 constexpr std::size_t kWaiting_bytes_max = 64 * 1024 * 1024;
-constexpr std::chrono::minutes kRefusalsEvery{10};
+constexpr std::chrono::minutes kReportRefusalsEvery{10};
 
 /// What has arrived and is not committed. It is no promise to anybody: what does not fit is
 /// dropped, and its gateway sends it again.
@@ -60,7 +60,7 @@ class Arrivals {
   /// Waits a moment for the first.
   [[nodiscard]] std::vector<mqtt::Message> take() {
     std::unique_lock lock{mutex_};
-    changed_.wait_for(lock, kLook, [&] { return !waiting_.empty() || is_new_connection_; });
+    changed_.wait_for(lock, kLookForBatches, [&] { return !waiting_.empty() || is_new_connection_; });
     std::vector<mqtt::Message> taken;
     while (!waiting_.empty() && taken.size() < kAtOnce) {
       bytes_ -= waiting_.front().payload.size();
@@ -88,7 +88,7 @@ bool is_less(const record::Progress& has, const record::Progress& wanted) {
   return has.entries < wanted.entries || has.events < wanted.events || has.results < wanted.results;
 }
 
-metering::Instant now() { return std::chrono::floor<seconds>(std::chrono::system_clock::now()); }
+metering::Instant time_of_arrival() { return std::chrono::floor<seconds>(std::chrono::system_clock::now()); }
 
 class Ingester {
  public:
@@ -142,7 +142,7 @@ class Ingester {
   /// What is not told now is told with the next batch, which the gateway sends again.
   void publish(mqtt::Connection& connection, const std::vector<mqtt::Message>& messages) {
     if (messages.empty()) return;
-    if (auto sent = connection.publish(messages, kPublishMax, stop_); !sent) {
+    if (auto sent = connection.publish(messages, kAnswerMax, stop_); !sent) {
       refuse("", "watermarks cannot be told: " + sent.error().message);
     }
   }
@@ -170,7 +170,7 @@ class Ingester {
                                batch ? "its topic names no site" : batch.error().message));
       return mqtt::Message{};
     }
-    const auto watermark = record::take(record, site, *batch, now());
+    const auto watermark = record::take(record, site, *batch, time_of_arrival());
     if (watermark && is_less(watermark->until, batch->after)) {
       ++counts_.refused;
       refuse(site,
@@ -194,7 +194,7 @@ class Ingester {
   void refuse(const std::string& site, const std::string& why) {
     const auto moment = steady_clock::now();
     const auto known = refused_.find(site);
-    if (known != refused_.end() && moment - known->second < kRefusalsEvery) return;
+    if (known != refused_.end() && moment - known->second < kReportRefusalsEvery) return;
     refused_[site] = moment;
     tell_(why);
   }

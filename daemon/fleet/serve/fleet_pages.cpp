@@ -36,7 +36,7 @@ using report::Table;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 500;
-constexpr int kJobsShown = 100;
+constexpr int kFleetJobsShown = 100;
 constexpr int kAuditShown = 200;
 constexpr std::array<std::string_view, 6> kStates{"alarm", "named", "silent",
                                                   "late",  "ahead", "trouble"};
@@ -381,7 +381,7 @@ Response site_page(const FleetServed& served, const std::string& id) {
     if (!newest) return unavailable(newest.error());
     std::ranges::move(*newest, std::back_inserter(results));
   }
-  const auto jobs = record::jobs(served.record, id, kJobsShown);
+  const auto jobs = record::jobs(served.record, id, kFleetJobsShown);
   if (!jobs) return unavailable(jobs.error());
   Html html;
   html.element("h1", site_words(row.site.site));

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kRenewEvery{60};
+constexpr std::chrono::seconds kRenewLeaseEvery{60};
 constexpr std::string_view kFolderName = "recald-job-";
 constexpr auto kOutput = "output.txt";
 constexpr std::size_t kLine_max = 400;
@@ -160,7 +160,7 @@ class Jobs {
                               .time_max = loop_.worker.time_max,
                               .memory_max_bytes = loop_.worker.memory_max_bytes},
                              [&] {
-                               if (steady_clock::now() - renewed > kRenewEvery) {
+                               if (steady_clock::now() - renewed > kRenewLeaseEvery) {
                                  renewed = steady_clock::now();
                                  // Of a record that is away nothing is known; it says so at the
                                  // end.

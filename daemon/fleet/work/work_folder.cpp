@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr auto kJob = "job.json";
 constexpr auto kOutcome = "outcome.json";
-constexpr auto kSite = "site";
+constexpr auto kSiteFolder = "site";
 constexpr auto kWork = "work";
 constexpr auto kStore = "store.db";
 constexpr std::int64_t kNumber = 1;  // Of the job in the folder's own store.
@@ -83,7 +83,7 @@ Result<Json> read_json(const fs::path& file) {
 Result<Task> read_task(const fs::path& folder) {
   const auto json = read_json(folder / kJob);
   if (!json) return tl::unexpected(json.error());
-  auto config = load_site(folder / kSite / json->value("site_file", ""));
+  auto config = load_site(folder / kSiteFolder / json->value("site_file", ""));
   if (!config) return failure(ErrorCode::invalid_value, config.error().front());
   auto calendar = metering::LocalCalendar::open(config->timezone);
   if (!calendar) return tl::unexpected(calendar.error());
@@ -138,7 +138,7 @@ Result<void> fill_work_folder(postgres::Connection& record, const record::FleetJ
   if (!site) return tl::unexpected(site.error());
   const auto state = record::state_before(record, job);
   if (!state) return tl::unexpected(state.error());
-  if (auto written = write_below(folder / kSite, site->files); !written) return written;
+  if (auto written = write_below(folder / kSiteFolder, site->files); !written) return written;
   if (auto made = system::make_folder(folder / kWork); !made) return made;
   if (auto written = write_below(folder / kWork, *state); !written) return written;
   const std::string task = job_json(job, site->site_file).dump(2) + "\n";

@@ -5,10 +5,10 @@
 namespace recald::daemon {
 namespace {
 
-using Labels = std::vector<std::pair<std::string, std::string>>;
+using SeriesLabels = std::vector<std::pair<std::string, std::string>>;
 
-Labels labels_of(const SiteConfig& site, const OutgoingMeter& meter) {
-  Labels labels{{"site", site.id}, {"meter", meter.id}};
+SeriesLabels labels_of(const SiteConfig& site, const OutgoingMeter& meter) {
+  SeriesLabels labels{{"site", site.id}, {"meter", meter.id}};
   if (!meter.quantity.empty()) labels.emplace_back("quantity", meter.quantity);
   if (!meter.utility.empty()) labels.emplace_back("utility", meter.utility);
   return labels;

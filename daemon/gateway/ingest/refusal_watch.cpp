@@ -14,7 +14,7 @@ using metering::Instant;
 constexpr std::chrono::hours kToldEvery{1};
 /// Devices are busy now and then, and gateways miss some. Equals the longest wait between tries of
 /// refused registers.
-constexpr std::chrono::minutes kPatience{5};
+constexpr std::chrono::minutes kRefusalPatience{5};
 
 /// How an exception is described when it lasts.
 struct Kind {
@@ -29,13 +29,13 @@ Kind kind_of(std::uint8_t exception) {
     return {"device_busy", "has been busy at every request for",
             "recald asks again at every poll. If this goes on, poll less often, or find out who "
             "else polls the device",
-            kPatience};
+            kRefusalPatience};
   }
   if (modbus::is_from_gateway(exception)) {
     return {"device_unreachable", "cannot be reached by its gateway, which answers requests for",
             "recald tries again, at least every probe_max. If this goes on, check the device's "
             "power, wiring and unit",
-            kPatience};
+            kRefusalPatience};
   }
   return {"registers_refused", "refuses",
           "recald asks again, at least every five minutes. If this goes on, check unit and "

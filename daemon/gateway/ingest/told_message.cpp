@@ -9,6 +9,7 @@
 #include "adapters/csv/fields.hpp"
 #include "daemon/gateway/ingest/json_depth.hpp"
 #include "daemon/gateway/ingest/plausible_time.hpp"
+#include "daemon/gateway/ingest/sent_values.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -17,9 +18,7 @@ using metering::Instant;
 using nlohmann::json;
 using std::chrono::seconds;
 
-constexpr int kDepthMax = 32;
-constexpr double kValueMax = 1e18;  // keeps values finite after any unit and multiplier
-constexpr seconds kClocksDiffer{300};
+constexpr int kMessageDepthMax = 32;
 /// Seconds since 1970 up to 2286; more are milliseconds.
 constexpr double kSecondsMax = 1e10;
 
@@ -76,7 +75,8 @@ class Message {
       number = number_of(*part);
       if (!number) return refused(wanted, "is no number");
     }
-    if (!(std::abs(*number) <= kValueMax)) return refused(wanted, "is more than any meter counts");
+    if (!(std::abs(*number) <= kSentValueMax))
+      return refused(wanted, "is more than any meter counts");
     std::optional<Instant> measured;
     if (!wanted.time_pointer.empty()) {
       const json* const part = part_at(document_, wanted.time_pointer);
@@ -97,8 +97,9 @@ class Message {
   bool parse() {
     if (is_parsed_) return !document_.is_discarded();
     is_parsed_ = true;
-    document_ = is_nested_deeper(payload_, kDepthMax) ? json(json::value_t::discarded)
-                                                      : json::parse(payload_, nullptr, false);
+    document_ = is_nested_deeper(payload_, kMessageDepthMax)
+                    ? json(json::value_t::discarded)
+                    : json::parse(payload_, nullptr, false);
     return !document_.is_discarded();
   }
 

@@ -18,10 +18,10 @@ using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds kClockSet{2'000};
+constexpr milliseconds kClockWasSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
-constexpr hours kRefusalsEvery{1};
+constexpr hours kRefusedReadingsEvery{1};
 constexpr std::chrono::minutes kMetersEvery{1};
 constexpr int kEventsTakenOver = 10'000;
 constexpr int kEventsLookedAt = 10'000;
@@ -360,7 +360,7 @@ void Gateway::watch_clock(const Moment& now) {
     if (clock_ok_) release_held(now);
     return;
   }
-  if (moved <= kClockSet && -moved <= kClockSet) return;
+  if (moved <= kClockWasSet && -moved <= kClockWasSet) return;
   for (const auto& bus : buses_) {
     for (LiveMeter& meter : bus->meters()) meter.clock_was_set();
   }
@@ -517,7 +517,7 @@ void Gateway::tell_of_pushed(const std::string& meter, const CommitCounts& count
 void Gateway::tell_of_refusal(const std::string& why) {
   const Moment now = ports_.loop.now();
   if (!why.empty()) {
-    if (refusal_told_at_ && now.monotonic - *refusal_told_at_ < kRefusalsEvery) return;
+    if (refusal_told_at_ && now.monotonic - *refusal_told_at_ < kRefusedReadingsEvery) return;
     refusal_told_at_ = now.monotonic;
     is_refusal_told_ = true;
     note({now.instant(), Severity::error, "store_refuses", "",

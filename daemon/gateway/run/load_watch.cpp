@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::chrono::hours kAskEvery{1};
 constexpr std::chrono::minutes kAskAgain{1};  // while something else goes on
-constexpr std::chrono::days kShown{8};
+constexpr std::chrono::days kShownFor{8};
 constexpr std::chrono::hours kLearnEvery{24};
 
 /// An exception is the reason why nothing is expected.
@@ -60,7 +60,7 @@ void LoadWatch::ask() {
   schedule(kAskEvery);
   is_asking_ = true;
   const metering::Instant now = loop_.now().instant();
-  const metering::TimeSpan span{std::chrono::floor<std::chrono::hours>(now - kShown), now};
+  const metering::TimeSpan span{std::chrono::floor<std::chrono::hours>(now - kShownFor), now};
   // The work may outlive this object, so it has copies of everything it uses.
   const auto found = std::make_shared<Result<std::vector<ExpectedMeter>>>();
   worker_.run([expect = expect_, span, found] { *found = expect_safely(expect, span); },

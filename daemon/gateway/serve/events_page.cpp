@@ -15,7 +15,7 @@ namespace {
 using report::Html;
 using report::Table;
 
-constexpr int kShown = 200;
+constexpr int kPageEvents = 200;
 constexpr std::array kSeverities{"info", "warning", "error"};
 
 bool contains_ignoring_case(std::string_view text, std::string_view part) {
@@ -82,7 +82,7 @@ http::Response events_page(const Served& served, const http::Request& request) {
   int found = 0;
   for (const StoreEvent& event : *events) {
     if (!filter.takes(event)) continue;
-    if (++found > kShown) continue;
+    if (++found > kPageEvents) continue;
     ++shown;
     table.row({{site_time_text(served.calendar, event.last.value_or(event.time))},
                severity_cell(event.severity),

@@ -13,6 +13,7 @@
 #include "core/absent.hpp"
 #include "core/metering/validation.hpp"
 #include "daemon/gateway/ingest/json_depth.hpp"
+#include "daemon/gateway/ingest/sent_values.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -25,9 +26,7 @@ constexpr std::string_view kExample =
     R"({"meter":"chw","unit":"kWh","readings":[{"time":"2026-03-01T00:00:00Z","value":1.5}]})";
 constexpr std::array<std::string_view, 6> kKeys{"meter",  "unit",   "stamps",
                                                 "reason", "author", "readings"};
-constexpr int kDepthMax = 8;        // a valid body has three
-constexpr double kValueMax = 1e18;  // keeps values finite after any unit and multiplier
-constexpr seconds kClocksDiffer{300};
+constexpr int kDepthMax = 8;  // a valid body has three
 /// A sender whose clock was reset must not create months of the year 2000.
 constexpr std::chrono::days kOldest{400};
 
@@ -194,7 +193,7 @@ class Elements {
                      place + " is not a number; write null for an interval without a value", place);
     }
     const double number = value->get<double>();
-    if (!(std::abs(number) <= kValueMax)) {
+    if (!(std::abs(number) <= kSentValueMax)) {
       return refusal(400, "invalid_value", place + " is more than any meter counts", place);
     }
     if (unit_.quantity != nullptr) return number;

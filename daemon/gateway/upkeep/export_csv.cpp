@@ -8,20 +8,20 @@ namespace recald::daemon {
 namespace {
 
 /// The shortest text that reads back as the same number; empty if it is not finite.
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 std::string reading_line(const std::string& meter, const metering::Reading& reading) {
   return fmt::format("{},{},{},kW,{},{},{}\n", metering::to_string(reading.start), meter,
-                     number(reading.mean_kW), metering::to_string(reading.validity),
+                     csv_number(reading.mean_kW), metering::to_string(reading.validity),
                      reading.late ? 1 : 0, metering::to_string(reading.reasons));
 }
 
 std::string month_line(const std::string& meter, const StoredMonth& month) {
   const metering::MonthlyFigure& figure = month.figure;
   return fmt::format("{},{},{},kWh/day,{},{},{},{},block-{}s,{},{}\n",
-                     metering::to_string(figure.month), meter, number(figure.daily_average_kWh),
-                     number(figure.coverage), number(figure.filled_share),
-                     figure.peak ? number(figure.peak->kW) : "",
+                     metering::to_string(figure.month), meter, csv_number(figure.daily_average_kWh),
+                     csv_number(figure.coverage), csv_number(figure.filled_share),
+                     figure.peak ? csv_number(figure.peak->kW) : "",
                      figure.peak ? metering::to_string(figure.peak->start) : "",
                      figure.peak_window.count(), figure.revision, month.time_zone_release);
 }

@@ -14,7 +14,7 @@ namespace recald::daemon {
 namespace {
 
 using std::chrono::seconds;
-constexpr seconds kHour{3600};
+constexpr seconds kOneHour{3600};
 // What readings do with a repeated interval; a footprint that has one is refused.
 constexpr std::string_view kWayOfReadings = "; the first value stays";
 
@@ -76,7 +76,7 @@ Result<void> check(const csv::ReadingsReport& report, const csv::ReadingsOptions
 /// An hour told in part would count what is not told as not moved.
 Result<void> require_whole_hours(const FootprintHours& hours, const diagnosis::SiteProblem& site,
                                  const csv::ReadingsOptions& options, const std::string& name) {
-  const auto whole_s = static_cast<double>(kHour.count());
+  const auto whole_s = static_cast<double>(kOneHour.count());
   for (Eigen::Index meter = 0; meter < hours.told_s().cols(); ++meter) {
     for (Eigen::Index i = 0; i < hours.told_s().rows(); ++i) {
       const double told_s = hours.told_s()(i, meter);
@@ -105,12 +105,12 @@ void FootprintHours::add(Eigen::Index meter, metering::Instant start, seconds le
                          double mean_kW) {
   const metering::Instant end = start + length;
   auto hour =
-      std::ranges::upper_bound(drivers_.hours, start - kHour, {}, &model::DriverHour::start);
+      std::ranges::upper_bound(drivers_.hours, start - kOneHour, {}, &model::DriverHour::start);
   for (; hour != drivers_.hours.end() && hour->start < end; ++hour) {
-    const seconds overlap = std::min(end, hour->start + kHour) - std::max(start, hour->start);
+    const seconds overlap = std::min(end, hour->start + kOneHour) - std::max(start, hour->start);
     const auto row = hour - drivers_.hours.begin();
     const auto overlap_s = static_cast<double>(overlap.count());
-    hours_kW_(row, meter) += mean_kW * overlap_s / static_cast<double>(kHour.count());
+    hours_kW_(row, meter) += mean_kW * overlap_s / static_cast<double>(kOneHour.count());
     told_s_(row, meter) += overlap_s;
     meets_site_ = true;
   }

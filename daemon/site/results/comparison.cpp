@@ -21,7 +21,7 @@ report::ComparedFit fit_of(const assessment::OutputAssessment& assessed) {
           {assessed.forecast.calibration.metrics, assessed.forecast.validation.metrics}};
 }
 
-std::string label_of(const assessment::OutputCalibration& output) {
+std::string compared_label(const assessment::OutputCalibration& output) {
   return display::meter_label(output.meter_id) + (output.unit == "kW" ? " peak" : "");
 }
 
@@ -68,7 +68,7 @@ std::vector<report::ComparedModel> compared_models(const std::vector<SiteModelRe
     const SiteCalibration& result = model.done->calibration;
     shown.note = result.not_calibrated_because;
     for (const assessment::OutputCalibration& output : result.outputs) {
-      shown.outputs.emplace_back(label_of(output), fit_of(output.assessment));
+      shown.outputs.emplace_back(compared_label(output), fit_of(output.assessment));
     }
     for (std::size_t j = 0; j < result.calibration.parameters.size(); ++j) {
       const calibration::Summary& found = result.calibration.parameters[j];

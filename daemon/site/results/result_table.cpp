@@ -19,7 +19,7 @@ std::string cells(const std::optional<assessment::FitMetrics>& metrics) {
 }
 
 /// "Chilled water, daily mean"
-std::string label_of(const assessment::OutputCalibration& output) {
+std::string row_label(const assessment::OutputCalibration& output) {
   return display::capitalised(display::output_words(output.name));
 }
 
@@ -55,7 +55,7 @@ std::string fit_lines(const assessment::AssessedCalibration& result) {
       return line(label, stage, cells(forecast.calibration.metrics),
                   cells(forecast.validation.metrics));
     };
-    text += forecast_line(label_of(output), "forecast", a.forecast);
+    text += forecast_line(row_label(output), "forecast", a.forecast);
     if (result.parameters.empty()) continue;
     if (a.yardstick) text += forecast_line("", "yardstick", *a.yardstick);
     text += stage_line("", "prior mode", a.before);
@@ -74,7 +74,7 @@ std::string band_lines(const assessment::AssessedCalibration& result) {
     const auto& scores = unseen ? forecast.validation.scores : forecast.blocks.scores;
     if (!scores) continue;
     text +=
-        fmt::format("{}: {} of {} {} inside the 90 % bands", label_of(output), scores->inside_90,
+        fmt::format("{}: {} of {} {} inside the 90 % bands", row_label(output), scores->inside_90,
                     scores->months, unseen ? "unseen months" : "months, three left out at a time,");
     if (forecast.unseen_mean) {
       const auto& [measured, mean] = *forecast.unseen_mean;
@@ -92,7 +92,7 @@ std::string unsettled_lines(const assessment::AssessedCalibration& result) {
   std::string text;
   for (const assessment::OutputCalibration& output : result.outputs) {
     if (output.not_fitted_because.empty()) continue;
-    text += fmt::format("{} is not fitted. {}\n", label_of(output), output.not_fitted_because);
+    text += fmt::format("{} is not fitted. {}\n", row_label(output), output.not_fitted_because);
   }
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     if (assessment::is_identified(result, j)) continue;
