@@ -3,6 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace recald::layout {
 namespace {
 
@@ -66,6 +76,98 @@ TEST(IncludeRules, CirclesAreFoundAroundACornerToo) {
                        {"core/c/z.cpp", {"core/a/x.hpp"}},
                        {"core/d/w.cpp", {"core/a/x.hpp", "core/d/v.hpp"}}}),
               ElementsAre("core/a core/b core/c"));
+}
+
+/// Where what begins at `at` ends, if it is a comment, a text or a character; `at` if it is none.
+std::size_t end_of_words(std::string_view source, std::size_t at) {
+  const auto past = [&](std::string_view end, std::size_t from) {
+    return std::min(source.find(end, from), source.size() - end.size()) + end.size();
+  };
+  const std::string_view rest = source.substr(at);
+  if (rest.starts_with("//")) return std::min(source.find('\n', at), source.size());
+  if (rest.starts_with("/*")) return past("*/", at + 2);
+  if (rest.starts_with("R\"")) {
+    const std::string_view mark = rest.substr(2, rest.find('(') - 2);
+    return past(")" + std::string{mark} + "\"", at + 2);
+  }
+  const char quote = rest.front();
+  const bool is_separator =  // 1'000
+      quote == '\'' && at > 0 && std::isalnum(static_cast<unsigned char>(source[at - 1])) != 0;
+  if ((quote != '"' && quote != '\'') || is_separator) return at;
+  std::size_t end = at + 1;
+  while (end < source.size() && source[end] != quote && source[end] != '\n') {
+    end += source[end] == '\\' ? 2 : 1;
+  }
+  return std::min(end + 1, source.size());
+}
+
+/// C++ with blanks for all that is in comments, texts and characters.
+std::string without_words(const std::string& source) {
+  std::string bare = source;
+  for (std::size_t at = 0; at < bare.size();) {
+    const std::size_t end = end_of_words(source, at);
+    for (std::size_t i = at; i < end; ++i) bare[i] = bare[i] == '\n' ? '\n' : ' ';
+    at = std::max(end, at + 1);
+  }
+  return bare;
+}
+
+/// Arguments of the call whose parenthesis opens at `open`.
+int argument_count(std::string_view bare, std::size_t open) {
+  int depth = 0;
+  int count = 1;
+  for (const char c : bare.substr(open)) {
+    depth += static_cast<int>(std::string_view{"([{"}.find(c) != std::string_view::npos);
+    depth -= static_cast<int>(std::string_view{")]}"}.find(c) != std::string_view::npos);
+    if (depth == 0) break;
+    count += static_cast<int>(depth == 1 && c == ',');
+  }
+  return count;
+}
+
+/// The lines of a test at which cases get no names.
+std::vector<std::ptrdiff_t> lines_of_nameless_cases(const std::string& source) {
+  constexpr std::string_view macro = "INSTANTIATE_TEST_SUITE_P(";
+  const std::string bare = without_words(source);
+  std::vector<std::ptrdiff_t> lines;
+  for (std::size_t at = bare.find(macro); at != std::string::npos; at = bare.find(macro, at + 1)) {
+    if (argument_count(bare, at + macro.size() - 1) >= 4) continue;
+    lines.push_back(1 +
+                    std::count(bare.begin(), bare.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  }
+  return lines;
+}
+
+// A list of tests names each case, and so does a failure: not by its bytes or by where it stands.
+TEST(CaseNames, AreGivenByEveryTest) {
+  const std::filesystem::path root{RECALD_SOURCE_DIR};
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator{root / "tests"}) {
+    if (entry.path().extension() != ".cpp") continue;
+    ++files;
+    std::ostringstream source;
+    source << std::ifstream{entry.path()}.rdbuf();
+    for (const std::ptrdiff_t line : lines_of_nameless_cases(source.str())) {
+      ADD_FAILURE() << entry.path().lexically_relative(root).generic_string() << ':' << line
+                    << ": INSTANTIATE_TEST_SUITE_P needs a fourth argument, which names each case";
+    }
+  }
+  EXPECT_GT(files, 300) << "the tests were not found";
+}
+
+TEST(CaseNames, AreTheFourthArgumentWhateverTheCasesAre) {
+  EXPECT_THAT(lines_of_nameless_cases("// one\nINSTANTIATE_TEST_SUITE_P(A, B, Values(1, 2));\n"),
+              ElementsAre(2));
+  EXPECT_THAT(lines_of_nameless_cases("INSTANTIATE_TEST_SUITE_P(A, B, Values(1'000, 2), name);"),
+              IsEmpty());
+  EXPECT_THAT(lines_of_nameless_cases(R"(INSTANTIATE_TEST_SUITE_P(A, B,
+      Values(C{"a), b", '"', {1, 2}}, C{"", ')', {}}));)"),
+              ElementsAre(1));
+  EXPECT_THAT(lines_of_nameless_cases("INSTANTIATE_TEST_SUITE_P(A, B, v /* , n */);  // , n"),
+              ElementsAre(1));
+  EXPECT_THAT(lines_of_nameless_cases("f(R\"x(\")x\");\nINSTANTIATE_TEST_SUITE_P(A, B, v);"),
+              ElementsAre(2));
+  EXPECT_THAT(lines_of_nameless_cases("// as in INSTANTIATE_TEST_SUITE_P(A, B, v)"), IsEmpty());
 }
 
 }  // namespace

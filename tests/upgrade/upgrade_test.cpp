@@ -189,7 +189,10 @@ TEST_P(Upgrade, TheDaemonTakesItAndEverythingIsStillThere) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Schema, Upgrade, ::testing::Range(1, sqlite::kSchemaVersion + 1));
+INSTANTIATE_TEST_SUITE_P(Schema, Upgrade, ::testing::Range(1, sqlite::kSchemaVersion + 1),
+                         [](const auto& from) {
+                           return "from_schema_" + std::to_string(from.param);
+                         });
 
 /// The releases that a changelog names, "0.1.0".
 std::vector<std::string> releases_in(const std::string& changelog) {

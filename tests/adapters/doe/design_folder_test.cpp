@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <ostream>
 
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -149,10 +150,12 @@ TEST_F(Folder, EveryFileHasToBeThere) {
 }
 
 struct Mistake {
+  const char* name;
   const char* file;
   const char* from;
   const char* to;
   const char* sentence;
+  friend void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 };
 
 class FolderMistake : public Folder, public ::testing::WithParamInterface<Mistake> {};
@@ -165,76 +168,88 @@ TEST_P(FolderMistake, IsSaidInOneSentence) {
 INSTANTIATE_TEST_SUITE_P(
     Runs, FolderMistake,
     ::testing::Values(
-        Mistake{"doe_inputs.csv", "run,ela", "run,elb",
+        Mistake{"doe_inputs_csv_lacks_a_parameter", "doe_inputs.csv", "run,ela", "run,elb",
                 "'doe_inputs.csv': column 'ela' is missing (is it 'elb'?); the file has run, elb "
                 "and t_cool"},
-        Mistake{"doe_inputs.csv", "run,", "Run,",
+        Mistake{"doe_inputs_csv_lacks_the_run", "doe_inputs.csv", "run,", "Run,",
                 "'doe_inputs.csv': column 'run' is missing (is it 'Run'?); the file has Run, ela "
                 "and t_cool"},
-        Mistake{"priors.csv", "ela,cm2,0,1,4\n", "",
+        Mistake{"doe_inputs_csv_has_a_stray_parameter", "priors.csv", "ela,cm2,0,1,4\n", "",
                 "'doe_inputs.csv': column 'ela' is no parameter of the priors file; add its prior "
                 "there or remove the column"},
-        Mistake{"doe_inputs.csv", "5,3,24", "3,3,24", "'doe_inputs.csv':4: run 3 comes twice"},
+        Mistake{"doe_inputs_csv_has_a_run_twice", "doe_inputs.csv", "5,3,24", "3,3,24",
+                "'doe_inputs.csv':4: run 3 comes twice"},
         Mistake{
-            "doe_inputs.csv", "5,3,24", "5,three,24",
+            "doe_inputs_csv_has_a_word_for_a_number", "doe_inputs.csv", "5,3,24", "5,three,24",
             "'doe_inputs.csv':4: column 'ela' is 'three'; write a number with a dot, such as 12.5"},
-        Mistake{"doe_inputs.csv", "5,3,24", "5,,24", "'doe_inputs.csv':4: column 'ela' is blank"},
+        Mistake{"doe_inputs_csv_has_a_blank", "doe_inputs.csv", "5,3,24", "5,,24",
+                "'doe_inputs.csv':4: column 'ela' is blank"},
         Mistake{
-            "doe_inputs.csv", "5,3,24", "5,nan,24",
+            "doe_inputs_csv_has_nan", "doe_inputs.csv", "5,3,24", "5,nan,24",
             "'doe_inputs.csv':4: column 'ela' is 'nan'; write a number with a dot, such as 12.5"},
-        Mistake{"doe_inputs.csv", "5,3,24", "5.5,3,24",
+        Mistake{"doe_inputs_csv_has_a_fraction_for_a_run", "doe_inputs.csv", "5,3,24", "5.5,3,24",
                 "'doe_inputs.csv':4: column 'run' is '5.5'; write a whole number, such as 17"},
-        Mistake{"doe_inputs.csv", "5,3,24", "5,3",
+        Mistake{"doe_inputs_csv_has_a_short_row", "doe_inputs.csv", "5,3,24", "5,3",
                 "'doe_inputs.csv':4: 2 fields instead of 3; each row needs one field a column"},
-        Mistake{"doe_inputs.csv", "3,2,25.5\n5,3,24\n", "",
+        Mistake{"doe_inputs_csv_has_one_run", "doe_inputs.csv", "3,2,25.5\n5,3,24\n", "",
                 "'doe_inputs.csv' has 1 runs; a design needs at least 2, and a useful one some 10 "
                 "a parameter"},
-        Mistake{"doe_inputs.csv", "7,1,21\n3,2,25.5\n5,3,24\n", "7,2,21\n3,2,25.5\n5,2,24\n",
+        Mistake{"doe_inputs_csv_has_a_constant_parameter", "doe_inputs.csv",
+                "7,1,21\n3,2,25.5\n5,3,24\n", "7,2,21\n3,2,25.5\n5,2,24\n",
                 "'doe_inputs.csv': parameter 'ela' is 2 in every run, so nothing can be learnt of "
-                "it; remove it from the design and from the priors"}));
+                "it; remove it from the design and from the priors"}),
+    [](const auto& mistake) { return mistake.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Outputs, FolderMistake,
     ::testing::Values(
-        Mistake{"doe_outputs.csv", "heat,peak", "heat,heat",
+        Mistake{"doe_outputs_csv_has_a_column_twice", "doe_outputs.csv", "heat,peak", "heat,heat",
                 "'doe_outputs.csv': column 'heat' comes twice"},
-        Mistake{"doe_outputs.csv", "2021-01,5,501,1501\n2021-02,5,502,1502\n", "",
+        Mistake{"doe_outputs_csv_lacks_a_run", "doe_outputs.csv",
+                "2021-01,5,501,1501\n2021-02,5,502,1502\n", "",
                 "'doe_outputs.csv' lacks 1 of 3 runs (5); run them, or remove them from the file "
                 "of run inputs"},
-        Mistake{"doe_inputs.csv", "5,3,24\n", "6,3,24\n",
+        Mistake{"doe_outputs_csv_has_a_stray_run", "doe_inputs.csv", "5,3,24\n", "6,3,24\n",
                 "'doe_outputs.csv':6: run 5 is not in the file of run inputs; remove its rows or "
                 "add it there"},
-        Mistake{"doe_outputs.csv", "2021-02,5,502,1502\n", "",
+        Mistake{"doe_outputs_csv_lacks_a_month", "doe_outputs.csv", "2021-02,5,502,1502\n", "",
                 "'doe_outputs.csv': run 5 lacks 1 of 2 months (2021-02); every run needs all of "
                 "them"},
-        Mistake{"doe_outputs.csv", "2021-02,5,502", "2021-01,5,502",
-                "'doe_outputs.csv':7: run 5 has month 2021-01 twice"},
-        Mistake{"doe_outputs.csv", "2021-02,5,502", "Feb,5,502",
+        Mistake{"doe_outputs_csv_has_a_month_twice", "doe_outputs.csv", "2021-02,5,502",
+                "2021-01,5,502", "'doe_outputs.csv':7: run 5 has month 2021-01 twice"},
+        Mistake{"doe_outputs_csv_has_a_word_for_a_month", "doe_outputs.csv", "2021-02,5,502",
+                "Feb,5,502",
                 "'doe_outputs.csv':7: month 'Feb' is neither YYYY-MM nor a number from 0 to 9999"},
-        Mistake{"doe_outputs.csv", "2021-02,5,502", "2,5,502",
+        Mistake{"doe_outputs_csv_mixes_kinds_of_months", "doe_outputs.csv", "2021-02,5,502",
+                "2,5,502",
                 "'doe_outputs.csv' names some months by number and some as YYYY-MM; use one of the "
                 "two"},
-        Mistake{"doe_outputs.csv", "5,502,", "5,,", "'doe_outputs.csv':7: column 'heat' is blank"},
-        Mistake{"doe_outputs.csv", "5,502,", "5,inf,",
+        Mistake{"doe_outputs_csv_has_a_blank", "doe_outputs.csv", "5,502,", "5,,",
+                "'doe_outputs.csv':7: column 'heat' is blank"},
+        Mistake{"doe_outputs_csv_has_inf", "doe_outputs.csv", "5,502,", "5,inf,",
                 "'doe_outputs.csv':7: column 'heat' is 'inf'; write a number with a dot, such as "
-                "12.5"}));
+                "12.5"}),
+    [](const auto& mistake) { return mistake.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Inputs, FolderMistake,
     ::testing::Values(
-        Mistake{"inputs.csv", "2021-02,3,70\n", "",
+        Mistake{"inputs_csv_lacks_a_month", "inputs.csv", "2021-02,3,70\n", "",
                 "'inputs.csv' lacks 1 of 2 months of the design (2021-02); its months have to be "
                 "written as those of the design and cover them"},
-        Mistake{"inputs.csv", "2021-02,3,70", "2021-01,3,70",
+        Mistake{"inputs_csv_has_a_month_twice", "inputs.csv", "2021-02,3,70", "2021-01,3,70",
                 "'inputs.csv':4: month 2021-01 comes twice"},
-        Mistake{"inputs.csv", "2021-02,3,70", "2021-02,3,", "'inputs.csv':4: column 'rh' is blank"},
-        Mistake{"inputs.csv", "2021-02,3,70", "2021-02,3,80",
+        Mistake{"inputs_csv_has_a_blank", "inputs.csv", "2021-02,3,70", "2021-02,3,",
+                "'inputs.csv':4: column 'rh' is blank"},
+        Mistake{"inputs_csv_has_a_constant_input", "inputs.csv", "2021-02,3,70", "2021-02,3,80",
                 "'inputs.csv': model input 'rh' is 80 in every month of the design, so it explains "
                 "nothing; remove the column"},
         Mistake{
-            "inputs.csv", "month,drybulb,rh", "month,drybulb,peak",
+            "inputs_csv_has_the_name_of_an_output", "inputs.csv", "month,drybulb,rh",
+            "month,drybulb,peak",
             "'DIR': 'peak' is the name of two things among parameters, model inputs and outputs; "
-            "rename one of them in its files"}));
+            "rename one of them in its files"}),
+    [](const auto& mistake) { return mistake.param.name; });
 
 TEST_F(Folder, ADesignOfOneMonthIsTooShort) {
   files_["doe_outputs.csv"] = "run,month,heat\n3,2021-01,1\n7,2021-01,2\n5,2021-01,3\n";

@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <optional>
+#include <ostream>
 
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "tests/support/faulty_disk.hpp"
@@ -38,16 +39,17 @@ struct Failure {
   Operation operation;
   int code;
   const char* name;
+  friend void PrintTo(const Failure& failure, std::ostream* out) { *out << failure.name; }
 };
 constexpr Failure kFailures[] = {
     {Operation::open, SQLITE_CANTOPEN, "open"},
     {Operation::read, SQLITE_IOERR_READ, "read"},
     {Operation::write, SQLITE_IOERR_WRITE, "write"},
-    {Operation::write, SQLITE_FULL, "full disk"},
+    {Operation::write, SQLITE_FULL, "full_disk"},
     {Operation::truncate, SQLITE_IOERR_TRUNCATE, "truncate"},
     {Operation::sync, SQLITE_IOERR_FSYNC, "sync"},
     {Operation::remove, SQLITE_IOERR_DELETE, "remove"},
-    {Operation::share, SQLITE_IOERR_SHMMAP, "shared memory"},
+    {Operation::share, SQLITE_IOERR_SHMMAP, "shared_memory"},
 };
 
 /// Fails one step of a kind, or that and all after it.
@@ -152,9 +154,8 @@ TEST_P(IoError, CostsNothingAndIsSurvived) {
 INSTANTIATE_TEST_SUITE_P(AllOf, IoError,
                          ::testing::Combine(::testing::ValuesIn(kFailures), ::testing::Bool()),
                          [](const auto& given) {
-                           std::string name = std::get<0>(given.param).name;
-                           std::erase_if(name, [](char c) { return c == ' '; });
-                           return name + (std::get<1>(given.param) ? "Lasting" : "Once");
+                           return std::string{std::get<0>(given.param).name} +
+                                  (std::get<1>(given.param) ? "_lasting" : "_once");
                          });
 
 }  // namespace

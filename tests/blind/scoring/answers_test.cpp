@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <ostream>
 
 #include "tests/blind/scoring/made_up.hpp"
 
@@ -70,6 +71,7 @@ struct Mistake {
   std::string name;
   std::function<void(json&)> make;
   std::string message;
+  friend void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 };
 
 class AnswerMistakes : public ::testing::TestWithParam<Mistake> {};

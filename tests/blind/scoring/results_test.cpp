@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <ostream>
 
 #include "tests/blind/scoring/case_result.hpp"
 #include "tests/blind/scoring/made_up.hpp"
@@ -52,6 +53,7 @@ struct Mistake {
   std::string name;
   std::function<void(json&)> make;
   std::string message;
+  friend void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 };
 
 class ResultMistakes : public ::testing::TestWithParam<Mistake> {};

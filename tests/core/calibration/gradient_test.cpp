@@ -68,6 +68,7 @@ struct Case {
   bool missing;
   Extras extras;
   HyperPrior prior;
+  friend void PrintTo(const Case& which, std::ostream* out) { *out << which.name; }
 };
 
 PosteriorData data_of(const Case& c, Rng& rng) {

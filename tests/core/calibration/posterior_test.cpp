@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <ostream>
 #include <vector>
 
 #include "tests/core/calibration/toy_models.hpp"
@@ -72,10 +73,12 @@ TEST(Posterior, WeightOfHalfOnTheThirdPoint) {
 enum class Extras { none, by_point, by_month };
 
 struct Case {
+  const char* name;
   int outputs;
   int months;
   bool missing;
   Extras extras;
+  friend void PrintTo(const Case& which, std::ostream* out) { *out << which.name; }
 };
 
 PosteriorData random_data(const Case& c, Rng& rng) {
@@ -194,11 +197,16 @@ TEST_P(LikelihoodByBruteForce, AgreesTo1e9) {
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, LikelihoodByBruteForce,
-    ::testing::Values(Case{1, 12, false, Extras::none}, Case{2, 24, false, Extras::none},
-                      Case{2, 24, true, Extras::none}, Case{3, 12, false, Extras::none},
-                      Case{3, 12, true, Extras::none}, Case{3, 12, true, Extras::by_point},
-                      Case{1, 12, true, Extras::by_point}, Case{1, 12, false, Extras::by_month},
-                      Case{3, 12, false, Extras::by_month}));
+    ::testing::Values(Case{"one_output", 1, 12, false, Extras::none},
+                      Case{"two_outputs", 2, 24, false, Extras::none},
+                      Case{"two_outputs_missing_months", 2, 24, true, Extras::none},
+                      Case{"three_outputs", 3, 12, false, Extras::none},
+                      Case{"three_outputs_missing_months", 3, 12, true, Extras::none},
+                      Case{"three_outputs_errors_by_point", 3, 12, true, Extras::by_point},
+                      Case{"one_output_errors_by_point", 1, 12, true, Extras::by_point},
+                      Case{"one_output_errors_by_month", 1, 12, false, Extras::by_month},
+                      Case{"three_outputs_errors_by_month", 3, 12, false, Extras::by_month}),
+    [](const auto& given) { return given.param.name; });
 
 // ---- the unconstrained density ----
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "tests/core/calibration/small_case.hpp"
 #include "tests/core/calibration/toy_models.hpp"
@@ -47,7 +48,7 @@ Eigen::MatrixXd in_coordinates(const SampledPosterior& sampled, Eigen::Index coo
   return draws;
 }
 
-class EverySampler : public ::testing::TestWithParam<const char*> {};
+class EverySampler : public ::testing::TestWithParam<std::string> {};
 
 // The answer comes from the trapezoid rule on a grid, not from another sampler.
 TEST_P(EverySampler, ReproducesQuadrature) {
@@ -68,7 +69,7 @@ TEST_P(EverySampler, ReproducesQuadrature) {
 INSTANTIATE_TEST_SUITE_P(ByName, EverySampler,
                          ::testing::Values("", "nuts", "dram", "smc", "seed_rwm"),
                          [](const auto& given) {
-                           return std::string(given.param).empty() ? "left_to_itself" : given.param;
+                           return given.param.empty() ? std::string{"left_to_itself"} : given.param;
                          });
 
 // Smooth discrepancy and much noise, or a wiggly one and little: two hills with nothing between.

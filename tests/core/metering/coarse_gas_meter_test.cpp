@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ostream>
 #include <random>
+#include <string>
 
 #include "core/metering/validation.hpp"
 #include "month_builder.hpp"
@@ -37,11 +38,11 @@ constexpr Firing kFirings[] = {{"one_a_day", 1.0, 1, 90.0, 90.0, 2.0},
 struct Case {
   double step_kWh;  ///< 0.1 m³ is 1.1 kWh, 1 m³ 11 kWh, 100 cubic feet 29 kWh.
   Firing firing;
+  [[nodiscard]] std::string name() const {
+    return std::to_string(std::lround(step_kWh)) + "_kWh_" + firing.name;
+  }
+  friend void PrintTo(const Case& which, std::ostream* out) { *out << which.name(); }
 };
-
-std::ostream& operator<<(std::ostream& out, const Case& which) {
-  return out << which.firing.name << " at " << which.step_kWh;
-}
 
 /// What the register rose by in each quarter, kWh.
 std::vector<double> quarters(const Case& which, int slots, std::mt19937& random) {
@@ -146,9 +147,8 @@ std::vector<Case> cases() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Steps, CoarseGasMeter, ::testing::ValuesIn(cases()), [](const auto& one) {
-  return std::to_string(std::lround(one.param.step_kWh)) + "_kWh_" + one.param.firing.name;
-});
+INSTANTIATE_TEST_SUITE_P(Steps, CoarseGasMeter, ::testing::ValuesIn(cases()),
+                         [](const auto& one) { return one.param.name(); });
 
 /// 4 kW all month with 400 kW once.
 MonthSlots one_firing(int at) {

@@ -49,9 +49,8 @@ struct Case {
   double resolution_kWh;
   std::vector<Outage> outages;
   std::vector<Outage> silences{};  ///< No sample at all.
+  friend void PrintTo(const Case& which, std::ostream* out) { *out << which.name; }
 };
-
-std::ostream& operator<<(std::ostream& out, const Case& which) { return out << which.name; }
 
 struct Register {
   std::vector<RegisterSample> samples;

@@ -7,6 +7,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,7 @@ TEST(TruncatedNormalPrior, KeepsItsDigitsFarOutInATail) {
 struct Named {
   const char* name;
   Prior prior;
+  friend void PrintTo(const Named& named, std::ostream* out) { *out << named.name; }
 };
 
 class AnyPrior : public ::testing::TestWithParam<Named> {

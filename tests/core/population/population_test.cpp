@@ -7,6 +7,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <ostream>
 
 #include "tests/core/population/sample_fleet.hpp"
 #include "tests/support/seed.hpp"
@@ -75,6 +76,7 @@ struct Kind {
   const char* name;
   int sites;
   double sd;  ///< Of the evidence.
+  friend void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 };
 
 class Coverage : public ::testing::TestWithParam<Kind> {};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "simulators/feed/recording.hpp"
 #include "simulators/scenario/archetypes.hpp"
@@ -56,6 +57,7 @@ struct Look {
   const char* name;
   Brief brief;
   seconds step;
+  friend void PrintTo(const Look& look, std::ostream* out) { *out << look.name; }
 };
 
 class EveryZone : public ::testing::TestWithParam<Look> {};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
@@ -102,7 +103,12 @@ EffectSettings settings_for(const EffectKind& kind, double strength) {
   return settings;
 }
 
-class EffectStrength : public ::testing::TestWithParam<EffectKind> {
+/// A kind that is printed by its name.
+struct NamedKind : EffectKind {
+  friend void PrintTo(const NamedKind& kind, std::ostream* out) { *out << kind.id; }
+};
+
+class EffectStrength : public ::testing::TestWithParam<NamedKind> {
  protected:
   /// What people, controls and plant do when nothing is hidden.
   static const std::vector<std::vector<double>>& nothing() {
@@ -153,7 +159,13 @@ TEST_P(EffectStrength, IsExplainedAndWithinItsRange) {
   EXPECT_EQ(find_effect_kind(kind.id)->id, kind.id);
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EffectStrength, ::testing::ValuesIn(effect_kinds()),
+std::vector<NamedKind> named_kinds() {
+  std::vector<NamedKind> kinds;
+  for (const EffectKind& kind : effect_kinds()) kinds.push_back({kind});
+  return kinds;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EffectStrength, ::testing::ValuesIn(named_kinds()),
                          [](const auto& tested) { return std::string(tested.param.id); });
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 
 #include "simulators/feed/meters.hpp"
 #include "simulators/feed/recording.hpp"
@@ -31,6 +32,9 @@ struct Published {
   Use use;
   double electricity_least, electricity_most;
   double all_least, all_most;
+  friend void PrintTo(const Published& published, std::ostream* out) {
+    *out << to_string(published.use);
+  }
 };
 
 // Between the lower and the higher of two stocks, and a third more either way: site energy of

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <ostream>
 
 #include "simulators/building/calendar.hpp"
 #include "simulators/building/people.hpp"
@@ -14,9 +15,15 @@ namespace {
 
 using namespace std::chrono;
 
-class EveryUseWithVisits : public ::testing::TestWithParam<Use> {
+/// A use that is printed by its name.
+struct NamedUse {
+  Use use;
+  friend void PrintTo(const NamedUse& named, std::ostream* out) { *out << to_string(named.use); }
+};
+
+class EveryUseWithVisits : public ::testing::TestWithParam<NamedUse> {
  protected:
-  const Drawings drawings_ = draw_up(typical_brief(GetParam()));
+  const Drawings drawings_ = draw_up(typical_brief(GetParam().use));
 };
 
 struct MeanDay {
@@ -71,9 +78,12 @@ TEST_P(EveryUseWithVisits, PeopleAreThereWhenTheSiteFileSaysSo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Uses, EveryUseWithVisits,
-                         ::testing::Values(Use::shop, Use::hotel, Use::clinic, Use::warehouse,
-                                           Use::restaurant, Use::gym),
-                         [](const auto& tested) { return std::string(to_string(tested.param)); });
+                         ::testing::Values(NamedUse{Use::shop}, NamedUse{Use::hotel},
+                                           NamedUse{Use::clinic}, NamedUse{Use::warehouse},
+                                           NamedUse{Use::restaurant}, NamedUse{Use::gym}),
+                         [](const auto& tested) {
+                           return std::string(to_string(tested.param.use));
+                         });
 
 // Where there are hours, at most one in thirty is there an hour before them, and as many after.
 TEST(RoomsByUse, RoomsAreServedWhilePeopleAreThere) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "simulators/scenario/archetypes.hpp"
 
@@ -59,12 +60,18 @@ double moved_share(const std::vector<std::vector<double>>& footprint_kW, const S
   return moved;
 }
 
-class EveryEffect : public ::testing::TestWithParam<const EffectKind*> {};
+/// A kind that is printed by its name.
+struct NamedKind {
+  const EffectKind* kind;
+  friend void PrintTo(const NamedKind& named, std::ostream* out) { *out << named.kind->id; }
+};
+
+class EveryEffect : public ::testing::TestWithParam<NamedKind> {};
 
 // A twin run differs through the effect alone: not at all at strength 0, the weather never, before
 // its first day never, and more at its typical strength than at half of it.
 TEST_P(EveryEffect, MovesTheMetersAndNothingElse) {
-  const EffectKind& kind = *GetParam();
+  const EffectKind& kind = *GetParam().kind;
   Scenario scenario = suited_to(kind);
   const auto calendar = metering::LocalCalendar::open(scenario.drawings.time_zone);
   ASSERT_TRUE(calendar.has_value());
@@ -104,14 +111,14 @@ TEST_P(EveryEffect, MovesTheMetersAndNothingElse) {
   EXPECT_GT(half, 0.0);
 }
 
-std::vector<const EffectKind*> all_kinds() {
-  std::vector<const EffectKind*> kinds;
-  for (const EffectKind& kind : effect_kinds()) kinds.push_back(&kind);
+std::vector<NamedKind> all_kinds() {
+  std::vector<NamedKind> kinds;
+  for (const EffectKind& kind : effect_kinds()) kinds.push_back({&kind});
   return kinds;
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryEffect, ::testing::ValuesIn(all_kinds()),
-                         [](const auto& tested) { return std::string(tested.param->id); });
+                         [](const auto& tested) { return std::string(tested.param.kind->id); });
 
 TEST(Decoys, OfferAWindThatNeverBlewAndAMeterThatIsNotOurs) {
   Scenario scenario = suited_to(effect_kinds().front());

@@ -295,9 +295,10 @@ TEST_F(GatewayTest, RegistersRefusedForAWhileCostNoEnergy) {
 }
 
 struct Unserved {
+  const char* name;
   int exception;
   const char* event;
-  friend void PrintTo(const Unserved& unserved, std::ostream* out) { *out << unserved.event; }
+  friend void PrintTo(const Unserved& unserved, std::ostream* out) { *out << unserved.name; }
 };
 class UnservedForHours : public GatewayTest, public ::testing::WithParamInterface<Unserved> {};
 
@@ -337,11 +338,13 @@ TEST_P(UnservedForHours, IsToldOnceAndThenCounted) {
   EXPECT_NEAR(stored_kWh("cooling", {kStart, kStart + hours{6}}), 600.0, kTick);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Exceptions, UnservedForHours,
-    ::testing::Values(Unserved{0x05, "device_busy"}, Unserved{0x06, "device_busy"},
-                      Unserved{0x0A, "device_unreachable"}, Unserved{0x0B, "device_unreachable"}),
-    [](const auto& given) { return "Exception" + std::to_string(given.param.exception); });
+INSTANTIATE_TEST_SUITE_P(Exceptions, UnservedForHours,
+                         ::testing::Values(Unserved{"acknowledged_0x05", 0x05, "device_busy"},
+                                           Unserved{"busy_0x06", 0x06, "device_busy"},
+                                           Unserved{"no_path_0x0A", 0x0A, "device_unreachable"},
+                                           Unserved{"no_response_0x0B", 0x0B,
+                                                    "device_unreachable"}),
+                         [](const auto& given) { return given.param.name; });
 
 // A device that refuses and answers in turn must not fill the list of events.
 TEST_F(GatewayTest, RegistersRefusedAgainAndAgainAreToldOnceAnHour) {

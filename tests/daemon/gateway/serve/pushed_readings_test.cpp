@@ -292,9 +292,10 @@ TEST_F(PushedMeterSite, ARestartKnowsWhatWasSent) {
 }
 
 struct WrongBody {
+  const char* name;
   const char* body;
   const char* said;
-  friend void PrintTo(const WrongBody& wrong, std::ostream* out) { *out << wrong.said; }
+  friend void PrintTo(const WrongBody& wrong, std::ostream* out) { *out << wrong.name; }
 };
 
 class WrongBodies : public PushedMeterSite, public ::testing::WithParamInterface<WrongBody> {};
@@ -307,45 +308,60 @@ TEST_P(WrongBodies, AreRefusedWhole) {
 INSTANTIATE_TEST_SUITE_P(
     PushedReadings, WrongBodies,
     ::testing::Values(
-        WrongBody{"", "400 malformed body"}, WrongBody{"{", "400 malformed body"},
-        WrongBody{"[]", "400 malformed body"}, WrongBody{R"({"meter":3})", "400 malformed meter"},
-        WrongBody{R"({"meter":"x"})", "404 not_found meter"},
-        WrongBody{R"({"meter":"main","readings":[]})", "409 not_possible meter"},
-        WrongBody{R"({"meter":"old","readings":[]})", "409 not_possible meter"},
-        WrongBody{R"({"meter":"chw"})", "400 malformed unit"},
-        WrongBody{R"({"meter":"chw","unit":"furlong"})", "400 invalid_value unit"},
-        WrongBody{R"({"meter":"chw","unit":"kWh"})", "400 malformed readings"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[]})", "400 malformed readings"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","reading":[]})", "400 malformed reading"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","stamps":"middle","readings":[1]})",
+        WrongBody{"empty", "", "400 malformed body"},
+        WrongBody{"cut_off", "{", "400 malformed body"},
+        WrongBody{"list_for_object", "[]", "400 malformed body"},
+        WrongBody{"meter_is_a_number", R"({"meter":3})", "400 malformed meter"},
+        WrongBody{"meter_unknown", R"({"meter":"x"})", "404 not_found meter"},
+        WrongBody{"meter_is_polled", R"({"meter":"main","readings":[]})", "409 not_possible meter"},
+        WrongBody{"meter_of_a_file", R"({"meter":"old","readings":[]})", "409 not_possible meter"},
+        WrongBody{"unit_missing", R"({"meter":"chw"})", "400 malformed unit"},
+        WrongBody{"unit_unknown", R"({"meter":"chw","unit":"furlong"})", "400 invalid_value unit"},
+        WrongBody{"readings_missing", R"({"meter":"chw","unit":"kWh"})", "400 malformed readings"},
+        WrongBody{"readings_empty", R"({"meter":"chw","unit":"kWh","readings":[]})",
+                  "400 malformed readings"},
+        WrongBody{"readings_misspelt", R"({"meter":"chw","unit":"kWh","reading":[]})",
+                  "400 malformed reading"},
+        WrongBody{"stamps_unknown",
+                  R"({"meter":"chw","unit":"kWh","stamps":"middle","readings":[1]})",
                   "400 invalid_value stamps"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","reason":" ","readings":[1]})",
+        WrongBody{"reason_blank", R"({"meter":"chw","unit":"kWh","reason":" ","readings":[1]})",
                   "400 invalid_value reason"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","author":"Ada","readings":[1]})",
+        WrongBody{"author_without_reason",
+                  R"({"meter":"chw","unit":"kWh","author":"Ada","readings":[1]})",
                   "400 invalid_value author"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[1]})", "400 malformed readings[0]"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:00:00Z"}]})",
+        WrongBody{"reading_is_a_number", R"({"meter":"chw","unit":"kWh","readings":[1]})",
+                  "400 malformed readings[0]"},
+        WrongBody{"value_missing",
+                  R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:00:00Z"}]})",
                   "400 invalid_value readings[0].value"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[{"time":"noon","value":1}]})",
+        WrongBody{"time_is_no_instant",
+                  R"({"meter":"chw","unit":"kWh","readings":[{"time":"noon","value":1}]})",
                   "400 invalid_value readings[0].time"},
         WrongBody{
+            "value_as_text",
             R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:00:00Z","value":"1"}]})",
             "400 invalid_value readings[0].value"},
         WrongBody{
+            "value_beyond_any_meter",
             R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:00:00Z","value":1e300}]})",
             "400 invalid_value readings[0].value"},
         WrongBody{
+            "time_off_the_grid",
             R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T10:07:00Z","value":1}]})",
             "400 invalid_value readings[0].time"},
         WrongBody{
+            "time_to_come",
             R"({"meter":"chw","unit":"kWh","readings":[{"time":"2024-03-30T12:00:00Z","value":1}]})",
             "400 invalid_value readings[0].time"},
         WrongBody{
+            "time_long_past",
             R"({"meter":"chw","unit":"kWh","readings":[{"time":"2000-01-01T00:00:00Z","value":1}]})",
             "400 invalid_value readings[0].time"},
-        WrongBody{R"({"meter":"chw","unit":"kWh","readings":[
+        WrongBody{"second_reading_misspelt", R"({"meter":"chw","unit":"kWh","readings":[
             {"time":"2024-03-30T10:00:00Z","value":1},{"time":"2024-03-30T10:15:00Z","valve":1}]})",
-                  "400 malformed readings[1]"}));
+                  "400 malformed readings[1]"}),
+    [](const auto& wrong) { return wrong.param.name; });
 
 }  // namespace
 }  // namespace recald::daemon
