@@ -11,7 +11,7 @@
 // pilot and burn-in included, on one thread. `ess_per_cpu_s` is the smallest bulk ESS of its
 // thirteen quantities over processor time; `ess_per_cholesky` the same in units of one 48 x 48
 // Cholesky factorisation by Eigen, timed in the same run, so that it travels between machines. It
-// needs the folder of the data (RECALD_DATA).
+// reads tests/data.
 //
 // `Density`, `Gradient` and `ThetaOnly` take m as their argument: two outputs of m / 2 months each,
 // decoupled, or in the general case (one known extra variance) a dense covariance.
@@ -277,10 +277,6 @@ double smallest_ess(const SampledPosterior& sampled) {
 }
 
 void DefaultSampler(benchmark::State& state) {
-  if (!std::filesystem::exists(seedcase_folder() / "metamodel.csv")) {
-    state.SkipWithError("no seedcase folder; set RECALD_DATA to the folder of the data");
-    return;
-  }
   const Seedcase seedcase = read_seedcase();
   const HyperPrior prior{"scaled", {10.0, 0.0084}, {10.0, 0.00084}, {1.0, 0.3}};
   const Posterior posterior =

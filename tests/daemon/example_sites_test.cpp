@@ -12,6 +12,7 @@
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/replay/recording.hpp"
 #include "tests/daemon/command_line.hpp"
+#include "tests/support/data_folders.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -22,10 +23,7 @@ std::filesystem::path example(const std::string& name) {
   return std::filesystem::path{RECALD_SOURCE_DIR} / "daemon/examples" / (name + ".toml");
 }
 
-std::filesystem::path data_folder() {
-  const char* given = std::getenv("RECALD_DATA");
-  return given != nullptr ? given : RECALD_DATA_DEFAULT;
-}
+std::filesystem::path data_folder() { return recald::testing::others_data("."); }
 
 metering::Month month(int year, unsigned number) {
   return std::chrono::year{year} / std::chrono::month{number};

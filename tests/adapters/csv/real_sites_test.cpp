@@ -13,6 +13,7 @@
 #include "adapters/csv/weather_csv.hpp"
 #include "core/metering/level_change.hpp"
 #include "core/metering/month_closer.hpp"
+#include "tests/support/data_folders.hpp"
 
 namespace recald::real_sites_test {
 namespace {
@@ -28,8 +29,7 @@ using std::chrono::hours;
 using std::chrono::seconds;
 
 std::filesystem::path site_folder(const std::string& site) {
-  const char* root = std::getenv("RECALD_DATA");
-  return std::filesystem::path{root != nullptr ? root : RECALD_DATA_DEFAULT} / "real" / site;
+  return testing::others_data("real") / site;
 }
 
 Month month(const std::string& text) { return *metering::parse_month(text); }

@@ -1,23 +1,17 @@
 /// Designs that other programs made.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "adapters/doe/design_folder.hpp"
 #include "adapters/doe/metamodel_file.hpp"
+#include "tests/support/data_folders.hpp"
 
 namespace recald::doe {
 namespace {
 
-std::filesystem::path data() {
-  const char* set = std::getenv("RECALD_DATA");
-  return set != nullptr ? set : RECALD_DATA_DEFAULT;
-}
-
-TEST(RealDesigns, TheSeedsCase) {
-  const auto folder = data() / "seedcase";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data in " << folder;
+TEST(SeedcaseFolder, IsRead) {
+  const auto folder = testing::own_data("seedcase");
   const auto design = read_design_folder(folder);
   ASSERT_TRUE(design) << design.error().message;
   EXPECT_EQ(design->parameters.size(), 6U);
@@ -37,7 +31,7 @@ TEST(RealDesigns, TheSeedsCase) {
 }
 
 TEST(RealDesigns, ALaboratoryInADynamicSimulation) {
-  const auto folder = data() / "dynamic_doe/campus_lab/design";
+  const auto folder = testing::others_data("dynamic_doe/campus_lab/design");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data in " << folder;
   const auto design = read_design_folder(folder);
   ASSERT_TRUE(design) << design.error().message;

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/support/data_folders.hpp"
+
 namespace recald::epw {
 namespace {
 
@@ -178,8 +180,7 @@ TEST(EpwBadInput, CutAtEveryByteOfHeaderAndFirstRows) {
 }
 
 std::filesystem::path weather_file(const char* name) {
-  const char* root = std::getenv("RECALD_DATA");
-  return std::filesystem::path{root != nullptr ? root : RECALD_DATA_DEFAULT} / "weather" / name;
+  return testing::others_data("weather") / name;
 }
 
 // Annual mean dry bulbs were summed from the files' seventh column by awk.

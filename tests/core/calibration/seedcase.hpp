@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -17,13 +16,11 @@
 #include "core/model/metamodel/builders.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter.hpp"
+#include "tests/support/data_folders.hpp"
 
 namespace recald::calibration {
 
-inline std::filesystem::path seedcase_folder() {
-  const char* data = std::getenv("RECALD_DATA");
-  return std::filesystem::path(data != nullptr ? data : RECALD_DATA_DEFAULT) / "seedcase";
-}
+inline std::filesystem::path seedcase_folder() { return testing::own_data("seedcase"); }
 
 /// Rows of a CSV below its header, split at commas.
 inline std::vector<std::vector<std::string>> read_rows(const std::filesystem::path& file) {

@@ -25,12 +25,7 @@ using nlohmann::json;
 
 class SeedcaseTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(seedcase_folder() / "metamodel.csv")) {
-      GTEST_SKIP() << "no " << seedcase_folder() << "; set RECALD_DATA to the folder of the data";
-    }
-    seedcase_ = read_seedcase();
-  }
+  void SetUp() override { seedcase_ = read_seedcase(); }
 
   [[nodiscard]] Posterior posterior(const HyperPrior& prior, double peak_weight = 1.0) const {
     PosteriorData data = seedcase_.data;

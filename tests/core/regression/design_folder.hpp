@@ -1,7 +1,6 @@
-/// Reads a folder of measured designs, for tests that are skipped where the data are absent.
+/// Reads a folder of design runs.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -12,11 +11,6 @@
 #include "core/regression/design_data.hpp"
 
 namespace recald::regression {
-
-inline std::filesystem::path data_folder() {
-  const char* data = std::getenv("RECALD_DATA");
-  return data != nullptr ? data : RECALD_DATA_DEFAULT;
-}
 
 /// Header and rows, split at commas.
 inline std::vector<std::vector<std::string>> read_table(const std::filesystem::path& file) {

@@ -11,6 +11,7 @@
 #include "tests/core/regression/design_folder.hpp"
 #include "tests/core/regression/golden_case.hpp"
 #include "tests/core/regression/made_design.hpp"
+#include "tests/support/data_folders.hpp"
 
 namespace recald::regression {
 namespace {
@@ -190,8 +191,7 @@ TEST(MonthlyForm, TakesARandomThousandOfMoreRuns) {
 // AIC -67413.48. There wind direction is a plain number and theta is scaled by its priors; scaling
 // by the design instead moves no AIC, since the model has every main effect.
 TEST(SeedForm, EndsWhereRsStepEndsOnTheSeedcase) {
-  const auto folder = data_folder() / "seedcase";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;
+  const auto folder = recald::testing::own_data("seedcase");
   Rng rng(8);
   const auto form = fit_seed_form(read_design(folder),
                                   {.criterion = Criterion::aic, .wind_in_degrees = true}, rng);
@@ -203,7 +203,7 @@ TEST(SeedForm, EndsWhereRsStepEndsOnTheSeedcase) {
 // Plain least squares with all products reaches 0.960, 0.967, 0.961 of R2 on left-out runs from the
 // seed's four weather inputs; the stepwise form has to come within 0.002 of it.
 TEST(SeedForm, KeepsUpWithPlainLeastSquaresOnTheCampusLaboratory) {
-  const auto folder = data_folder() / "dynamic_doe" / "campus_lab" / "design";
+  const auto folder = recald::testing::others_data("dynamic_doe/campus_lab/design");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;
   DesignData design = read_design(folder);
   ASSERT_EQ(design.inputs.back(), "sun");
@@ -222,7 +222,7 @@ TEST(SeedForm, KeepsUpWithPlainLeastSquaresOnTheCampusLaboratory) {
 // A polynomial of second degree for each month, its terms chosen stepwise, explained 0.92, 0.95 and
 // 0.99 of what the parameters do within months.
 TEST(MonthlyForm, IsBetterThanPolynomialsOnTheCampusLaboratory) {
-  const auto folder = data_folder() / "dynamic_doe" / "campus_lab" / "design";
+  const auto folder = recald::testing::others_data("dynamic_doe/campus_lab/design");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;
   const auto form = fit_monthly_form(read_design(folder));
   ASSERT_TRUE(form.has_value()) << form.error().message;

@@ -8,6 +8,7 @@
 
 #include "tests/core/regression/design_folder.hpp"
 #include "tests/core/regression/made_design.hpp"
+#include "tests/support/data_folders.hpp"
 
 namespace recald::screening {
 namespace {
@@ -116,8 +117,7 @@ TEST(Screen, ChecksTheDesignFirst) {
 
 // 25 candidates of which six have wide priors; the other nineteen are known to a few per cent.
 TEST(Screen, FindsTheWideParametersOfTheSeedcase) {
-  const auto folder = regression::data_folder() / "seedcase";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;
+  const auto folder = recald::testing::own_data("seedcase");
   const DesignData design = regression::read_design(folder, "screen_");
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Rng rng(seed);

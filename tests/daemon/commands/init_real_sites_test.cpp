@@ -12,6 +12,7 @@
 
 #include "../command_line.hpp"
 #include "adapters/csv/fields.hpp"
+#include "tests/support/data_folders.hpp"
 #include "tests/support/sample_exports.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -24,9 +25,7 @@ using testing::Outcome;
 using testing::run;
 
 std::filesystem::path readings_of(const std::string& site) {
-  const char* root = std::getenv("RECALD_DATA");
-  return std::filesystem::path{root != nullptr ? root : RECALD_DATA_DEFAULT} / "real" / site /
-         "meters.csv";
+  return recald::testing::others_data("real") / site / "meters.csv";
 }
 
 struct Row {

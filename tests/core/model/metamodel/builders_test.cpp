@@ -11,6 +11,7 @@
 
 #include "tests/core/regression/design_folder.hpp"
 #include "tests/core/regression/made_design.hpp"
+#include "tests/support/data_folders.hpp"
 
 namespace recald::model::metamodel {
 namespace {
@@ -220,8 +221,7 @@ TEST(MetaModel, OfGivenTermsNamesWhatItDoesNotKnow) {
 // The given coefficients came from R's step on this very design, scaled by priors, measured months
 // and design; so they have to predict the design with R's in-sample R2 of 0.9683.
 TEST(MetaModel, OfGivenTermsPredictsTheSeedcase) {
-  const auto folder = regression::data_folder() / "seedcase";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data at " << folder;
+  const auto folder = recald::testing::own_data("seedcase");
   const DesignData design = regression::read_design(folder);
   std::vector<Parameter> parameters;
   auto rows = regression::read_table(folder / "priors.csv");
