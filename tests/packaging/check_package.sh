@@ -1,5 +1,5 @@
 #!/bin/sh
-# What is in a package: lintian has nothing to say, it is small, and the unit in it is sandboxed.
+# What is in a package: lintian has nothing to say, it is small, its programs are hardened, and the unit in it is sandboxed.
 #
 #   check_package.sh DEB RECALD    RECALD: a program that runs here, for the unit's check
 set -eu
@@ -20,6 +20,17 @@ dpkg-deb -x "$deb" "$place/root"
 cd "$place/root"
 size=$(find . -type f -printf '%s\n' | awk '{ sum += $1 } END { print sum }')
 [ "$size" -le 8800000 ] || fail "$size bytes installed, more than 8.8 MB"
+
+# Hardened as dpkg-buildflags asks: full RELRO, position independent, stack protector, FORTIFY.
+for program in $(find . -path '*/bin/*' -type f); do
+  readelf -Wl "$program" | grep -q GNU_RELRO || fail "$program: no RELRO"
+  readelf -Wd "$program" | grep -q 'BIND_NOW\|FLAGS.*NOW' || fail "$program: symbols are bound late, so RELRO is not full"
+  readelf -Wh "$program" | grep -q 'Type: *DYN' || fail "$program: not position independent"
+  readelf -W --dyn-syms "$program" >"$place/symbols"
+  grep -q __stack_chk_fail "$place/symbols" || fail "$program: no stack protector"
+  grep '__[a-z]*_chk' "$place/symbols" | grep -qv __stack_chk_fail || fail "$program: nothing is fortified"
+done
+[ -f usr/bin/recald ] || exit 0  # the simulator's package has no more
 
 for command in $("$recald" --help | sed -n 's/^  \([a-z]*\)  .*/\1/p'); do
   page=usr/share/man/man1/recald-$command.1.gz
