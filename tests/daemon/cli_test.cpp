@@ -36,13 +36,13 @@ using testing::run;
 using ::testing::StartsWith;
 
 // A local first quarter in Zurich: one hour ahead of UTC until 28 March, then two.
-const Instant kBegin = sys_days{year{2020} / 12 / 31} + hours{23};
+const Instant kReadingsBegin = sys_days{year{2020} / 12 / 31} + hours{23};
 const Instant kEnd = sys_days{year{2021} / 3 / 31} + hours{22};
 
 std::string quarter_readings() {
   std::string text = "timestamp,meter,value,unit\n";
   bool high = false;
-  for (Instant t = kBegin; t < kEnd; t += hours{1}, high = !high) {
+  for (Instant t = kReadingsBegin; t < kEnd; t += hours{1}, high = !high) {
     text += metering::to_string(t) + ",electricity," + (high ? "60" : "40") + ",kW\n";
     text += metering::to_string(t) + ",heat," + (high ? "30" : "20") + ",kWh\n";
   }
@@ -274,7 +274,7 @@ TEST_F(Cli, WeatherWithoutTemperatureSaysWhatStillWorks) {
   write("site.toml", sample_site());
   std::string text = "timestamp,dry_bulb_C,ghi_W_m2\n";
   for (int h = 0; h < 48; ++h) {
-    text += metering::to_string(kBegin + hours{h}) + ",,100\n";
+    text += metering::to_string(kReadingsBegin + hours{h}) + ",,100\n";
   }
   write("weather.csv", text);
   const std::string sentence =
@@ -300,7 +300,7 @@ class SumOfMeters : public Cli {
   static std::string halves(Instant gap = {}) {
     std::string text = "timestamp,meter,value,unit\n";
     bool high = false;
-    for (Instant t = kBegin; t < kEnd; t += hours{1}, high = !high) {
+    for (Instant t = kReadingsBegin; t < kEnd; t += hours{1}, high = !high) {
       const std::string stamp = metering::to_string(t);
       text += stamp + ",east," + (high ? "60" : "40") + ",kW\n";
       if (t != gap) text += stamp + ",west," + (high ? "30" : "20") + ",kW\n";
@@ -342,7 +342,7 @@ TEST_F(SumOfMeters, LacksWhatAPartLacks) {
 
 TEST_F(SumOfMeters, OfPartsWithOtherIntervalsIsNamed) {
   std::string text = "timestamp,meter,value,unit\n";
-  for (Instant t = kBegin; t < kEnd; t += std::chrono::minutes{30}) {
+  for (Instant t = kReadingsBegin; t < kEnd; t += std::chrono::minutes{30}) {
     text += metering::to_string(t) + ",west,25,kW\n";
   }
   write("west.csv", text);

@@ -45,7 +45,7 @@ Instant parse_instant(const std::string& text) {
   return std::chrono::sys_days{day} + std::chrono::hours{h} + std::chrono::minutes{mi};
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
+std::vector<std::string> csv_lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in{text};
   for (std::string line; std::getline(in, line);) lines.push_back(line);
@@ -90,8 +90,8 @@ class EndToEnd : public ::testing::Test {
 TEST_F(EndToEnd, MonthsAreThoseOfTheBuilding) {
   const Outcome outcome = run({"replay", path("site.toml"), "--out", path("replayed")});
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
-  EXPECT_EQ(lines_of(outcome.out).size(), 3u * 36);
-  const auto rows = lines_of(read_text(folder_ / "replayed/months.csv"));
+  EXPECT_EQ(csv_lines(outcome.out).size(), 3u * 36);
+  const auto rows = csv_lines(read_text(folder_ / "replayed/months.csv"));
   ASSERT_EQ(rows.size(), 1u + 3 * 36);
 
   // Against the clean figures behind the faults. A gap of days in spring costs chilled water, which
@@ -113,7 +113,7 @@ TEST_F(EndToEnd, MonthsAreThoseOfTheBuilding) {
 
 TEST_F(EndToEnd, EndStampsAndOrderOfRowsDoNotMatter) {
   const std::string months = months_of("site.toml");
-  auto rows = lines_of(read_text(folder_ / "readings.csv"));
+  auto rows = csv_lines(read_text(folder_ / "readings.csv"));
   const std::string header = rows.front();
   rows.erase(rows.begin());
 
@@ -139,7 +139,7 @@ TEST_F(EndToEnd, EndStampsAndOrderOfRowsDoNotMatter) {
   EXPECT_EQ(months_of("grouped.toml"), months);
 }
 
-std::string without_wall_time(const std::string& text) {
+std::string with_no_wall_time(const std::string& text) {
   return replaced(text, "\"wall_s\": [0-9.e-]+", "\"wall_s\": _");
 }
 
@@ -192,8 +192,8 @@ TEST_F(EndToEnd, CalibrationLeavesEverythingAndRepeatsItself) {
        {"draws_1.csv", "draws_2.csv", "months.csv", "profile.json", "report.html"}) {
     EXPECT_TRUE(read_text(folder_ / "one" / name) == read_text(folder_ / "two" / name)) << name;
   }
-  EXPECT_EQ(without_wall_time(read_text(folder_ / "one/calibration.json")),
-            without_wall_time(read_text(folder_ / "two/calibration.json")));
+  EXPECT_EQ(with_no_wall_time(read_text(folder_ / "one/calibration.json")),
+            with_no_wall_time(read_text(folder_ / "two/calibration.json")));
   EXPECT_TRUE(read_text(folder_ / "page.html") == read_text(folder_ / "one/report.html"));
   EXPECT_NE(read_text(folder_ / "one/draws_1.csv"), read_text(folder_ / "other/draws_1.csv"));
   EXPECT_NE(read_text(folder_ / "one/draws_1.csv"), read_text(folder_ / "one/draws_2.csv"));
@@ -203,7 +203,7 @@ TEST_F(EndToEnd, CalibrationLeavesEverythingAndRepeatsItself) {
   expect_contract(Json::parse(one.out));
   EXPECT_THAT(two.out, HasSubstr("Guideline 14, chilled water, daily mean: "));
 
-  const auto draws = lines_of(read_text(folder_ / "one/draws_2.csv"));
+  const auto draws = csv_lines(read_text(folder_ / "one/draws_2.csv"));
   const auto header =
       std::ranges::find_if(draws, [](const std::string& line) { return !line.starts_with('#'); });
   ASSERT_NE(header, draws.end());
@@ -216,7 +216,7 @@ TEST_F(EndToEnd, CalibrationLeavesEverythingAndRepeatsItself) {
   EXPECT_THAT(draws, ::testing::Contains("# num_samples = 1500"));
   EXPECT_THAT(draws, ::testing::Contains("# seed = 3"));
 
-  EXPECT_EQ(lines_of(read_text(folder_ / "one/months.csv")).size(), 1u + 3 * 36);
+  EXPECT_EQ(csv_lines(read_text(folder_ / "one/months.csv")).size(), 1u + 3 * 36);
   const std::string report = read_text(folder_ / "one/report.html");
   EXPECT_THAT(report, HasSubstr("Campus laboratory building"));
   EXPECT_THAT(report, HasSubstr("2026-09-21"));  // SOURCE_DATE_EPOCH
@@ -277,7 +277,7 @@ TEST_F(EndToEnd, ForecastsOfUnseenMonthsAreBetterThanTheModelAlone) {
 
 TEST_F(EndToEnd, MonthWithoutWeatherIsLeftOutAndNamed) {
   std::vector<std::string> kept;
-  for (const std::string& row : lines_of(read_text(folder_ / "weather.csv"))) {
+  for (const std::string& row : csv_lines(read_text(folder_ / "weather.csv"))) {
     if (!row.starts_with("2022-06-")) kept.push_back(row);
   }
   write_text(folder_ / "weather.csv", joined(kept));
@@ -331,7 +331,7 @@ TEST(WeatherAtTheStamp, NamesNoClockOfASoundBuilding) {
   const auto written =
       simulators::write_building_feed({.out = folder.path(), .scenario = sound, .seed = 7});
   ASSERT_TRUE(written.has_value()) << written.error().message;
-  write_text(folder / "weather.epw", as_epw(lines_of(read_text(folder / "weather.csv"))));
+  write_text(folder / "weather.epw", as_epw(csv_lines(read_text(folder / "weather.csv"))));
   const std::string site = edited(read_text(folder / "site.toml"),
                                   "file = \"weather.csv\"\nformat = \"csv\"\nstamps = \"start\"\n"
                                   "values = \"mean\"\n",

@@ -16,7 +16,9 @@ using ::testing::ElementsAre;
 const std::vector<metering::Month> kMonths = {year{2021} / std::chrono::January,
                                               year{2021} / std::chrono::February};
 
-metering::LocalCalendar calendar(const char* zone) { return *metering::LocalCalendar::open(zone); }
+metering::LocalCalendar calendar_in(const char* zone) {
+  return *metering::LocalCalendar::open(zone);
+}
 
 /// January and February 2021 and two days on either side, each hour as `make(is_january, i)` says.
 template <class Make>
@@ -44,7 +46,7 @@ TEST(MonthlyInputs, AreMeansOfTheMonth) {
                        .wind_speed_m_s = january ? 3.0 : 4.0,
                        .wind_dir_deg = january ? 0.0 : 90.0};
   });
-  const MonthlyInputs inputs = monthly_inputs(weather, calendar("UTC"), kMonths);
+  const MonthlyInputs inputs = monthly_inputs(weather, calendar_in("UTC"), kMonths);
   EXPECT_THAT(inputs.names, ElementsAre("dry_bulb_C", "rel_humidity_pct", "wind_speed_m_s",
                                         "wind_dir_sin", "wind_dir_cos"));
   EXPECT_NEAR(value(inputs, "dry_bulb_C", 0), 5.0, 1e-12);
@@ -61,7 +63,7 @@ TEST(MonthlyInputs, WindDirectionIsAveragedAroundTheCircle) {
         .wind_speed_m_s = 2.0,
         .wind_dir_deg = january ? std::fmod(360.0 + side_deg, 360.0) : 90.0 + side_deg};
   });
-  const MonthlyInputs inputs = monthly_inputs(weather, calendar("UTC"), kMonths);
+  const MonthlyInputs inputs = monthly_inputs(weather, calendar_in("UTC"), kMonths);
   EXPECT_NEAR(value(inputs, "wind_dir_sin", 0), 0.0, 1e-12);
   EXPECT_NEAR(value(inputs, "wind_dir_cos", 0), 1.0, 1e-12);
   EXPECT_NEAR(value(inputs, "wind_dir_sin", 1), 1.0, 1e-12);
@@ -75,7 +77,7 @@ TEST(MonthlyInputs, StrongWindsWeighMoreInTheDirection) {
     return WeatherHour{.wind_speed_m_s = north ? 3.0 : 4.0,
                        .wind_dir_deg = north || !january ? 0.0 : 90.0};
   });
-  const MonthlyInputs inputs = monthly_inputs(weather, calendar("UTC"), kMonths);
+  const MonthlyInputs inputs = monthly_inputs(weather, calendar_in("UTC"), kMonths);
   EXPECT_NEAR(value(inputs, "wind_dir_sin", 0), 0.8, 1e-12);
   EXPECT_NEAR(value(inputs, "wind_dir_cos", 0), 0.6, 1e-12);
 }
@@ -86,14 +88,15 @@ TEST(MonthlyInputs, LeavesOutWhatDoesNotVaryAndWhatAMonthLacks) {
                        .rel_humidity_pct = january ? 60.0 : kAbsent,
                        .wind_speed_m_s = 3.0};
   });
-  EXPECT_THAT(monthly_inputs(weather, calendar("UTC"), kMonths).names, ElementsAre("dry_bulb_C"));
+  EXPECT_THAT(monthly_inputs(weather, calendar_in("UTC"), kMonths).names,
+              ElementsAre("dry_bulb_C"));
 }
 
 TEST(MonthlyInputs, SingleBlankHoursDoNotCount) {
   const WeatherSeries weather = two_months([](bool january, int i) {
     return WeatherHour{.dry_bulb_C = i % 3 == 0 ? kAbsent : (january ? 5.0 : 9.0)};
   });
-  const MonthlyInputs inputs = monthly_inputs(weather, calendar("UTC"), kMonths);
+  const MonthlyInputs inputs = monthly_inputs(weather, calendar_in("UTC"), kMonths);
   EXPECT_NEAR(value(inputs, "dry_bulb_C", 0), 5.0, 1e-12);
   EXPECT_NEAR(value(inputs, "dry_bulb_C", 1), 9.0, 1e-12);
 }
@@ -102,7 +105,7 @@ TEST(MonthlyInputs, SingleBlankHoursDoNotCount) {
 TEST(MonthlyInputs, MonthsAreLocal) {
   const WeatherSeries weather =
       two_months([](bool january, int) { return WeatherHour{.dry_bulb_C = january ? 5.0 : 9.0}; });
-  const MonthlyInputs inputs = monthly_inputs(weather, calendar("America/Chicago"), kMonths);
+  const MonthlyInputs inputs = monthly_inputs(weather, calendar_in("America/Chicago"), kMonths);
   EXPECT_NEAR(value(inputs, "dry_bulb_C", 0), 5.0 + 4.0 * 6.0 / 744.0, 1e-12);
 }
 
@@ -113,7 +116,7 @@ TEST(MonthlyInputs, MonthOutsideTheWeatherLeavesNoColumn) {
   for (const auto& months :
        {std::vector{kMonths[0], kMonths[1], june}, std::vector{kMonths[0], june, kMonths[1]},
         std::vector{june, kMonths[0], kMonths[1]}}) {
-    const MonthlyInputs inputs = monthly_inputs(weather, calendar("UTC"), months);
+    const MonthlyInputs inputs = monthly_inputs(weather, calendar_in("UTC"), months);
     EXPECT_TRUE(inputs.names.empty());
     EXPECT_EQ(inputs.values.cols(), 0);
     EXPECT_EQ(inputs.values.rows(), 3);

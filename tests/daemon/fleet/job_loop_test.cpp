@@ -44,7 +44,7 @@ class JobLoopTest : public record::Record {
   /// A program in the place of recald, which does what the script says; $3 is the job's folder.
   [[nodiscard]] JobLoop loop(const std::string& script) {
     const auto program = folder_ / "program";
-    testing::write_text(program, "#!/bin/sh\n" + script + "\n");
+    recald::testing::write_text(program, "#!/bin/sh\n" + script + "\n");
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
     std::filesystem::create_directories(folder_ / "jobs");
     return {.record = {.url = url_, .password_file = {}},
@@ -69,7 +69,7 @@ class JobLoopTest : public record::Record {
     return record::jobs(*connection_, site, 1).value().at(0);
   }
 
-  testing::TemporaryFolder folder_;
+  recald::testing::TemporaryFolder folder_;
   std::vector<std::string> told_;
 };
 
@@ -98,7 +98,7 @@ TEST_F(JobLoopTest, GivesAProcessTheSitesFilesAndItsStore) {
                              "; grep -o '\"kind\": \"[a-z]*\"' $3/job.json >> " +
                              (folder_ / "seen").string() + "; " + leaves(kOutcome);
   EXPECT_EQ(run(loop(script)), 1);
-  const std::string seen = testing::read_text(folder_ / "seen");
+  const std::string seen = recald::testing::read_text(folder_ / "seen");
   EXPECT_THAT(seen, AllOf(HasSubstr("id = 1"), HasSubstr("store.db"), HasSubstr("city.epw"),
                           HasSubstr("\"kind\": \"calibration\"")));
 }
@@ -167,10 +167,10 @@ TEST_F(JobLoopTest, FoldersOfWorkersThatWereKilledGo) {
 }
 
 TEST(WorkFolder, WithoutAnOutcomeThereIsNoResult) {
-  testing::TemporaryFolder folder;
-  testing::write_text(folder / "job.json", "{}");
+  recald::testing::TemporaryFolder folder;
+  recald::testing::write_text(folder / "job.json", "{}");
   EXPECT_FALSE(read_outcome(folder.path()));
-  testing::write_text(folder / "outcome.json", "no JSON");
+  recald::testing::write_text(folder / "outcome.json", "no JSON");
   const auto damaged = read_outcome(folder.path());
   ASSERT_FALSE(damaged);
   EXPECT_EQ(damaged.error().code, ErrorCode::malformed);

@@ -16,26 +16,26 @@ class SiteDescriptionTest : public ::testing::Test {
  protected:
   SiteDescriptionTest() {
     std::filesystem::create_directories(folder_ / "site" / "weather");
-    testing::write_text(folder_ / "site" / "weather" / "city.csv", "time,dry_bulb_C\n");
-    testing::write_text(folder_ / "site" / "readings.csv", "timestamp,meter,value,unit\n");
-    testing::write_text(folder_ / "elsewhere.csv", "time,dry_bulb_C\n");
+    recald::testing::write_text(folder_ / "site" / "weather" / "city.csv", "time,dry_bulb_C\n");
+    recald::testing::write_text(folder_ / "site" / "readings.csv", "timestamp,meter,value,unit\n");
+    recald::testing::write_text(folder_ / "elsewhere.csv", "time,dry_bulb_C\n");
   }
 
   Result<record::SiteDescription> describe_with(const std::string& weather,
                                                 bool has_model = true) const {
     const auto file = folder_ / "site" / "depot.toml";
-    std::string text{testing::kSampleMeters};
-    if (has_model) text += testing::kSampleModel;
+    std::string text{recald::testing::kSampleMeters};
+    if (has_model) text += recald::testing::kSampleModel;
     if (const auto at = text.find("weather.csv"); at != std::string::npos) {
       text.replace(at, std::string_view{"weather.csv"}.size(), weather);
     }
-    testing::write_text(file, text);
+    recald::testing::write_text(file, text);
     auto config = load_site(file);
     if (!config) return failure(ErrorCode::malformed, config.error().front());
     return describe({std::move(*config), metering::LocalCalendar::open("Europe/Zurich").value()});
   }
 
-  testing::TemporaryFolder folder_;
+  recald::testing::TemporaryFolder folder_;
 };
 
 TEST_F(SiteDescriptionTest, HasTheSitesFileAndEveryFileThatItNames) {

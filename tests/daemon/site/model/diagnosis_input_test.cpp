@@ -17,7 +17,7 @@ using diagnosis::SiteProblem;
 class SiteProblemTest : public ::testing::Test {
  protected:
   SiteProblemTest() {
-    testing::write_depot_year(folder_.path());
+    recald::testing::write_depot_year(folder_.path());
     std::ostringstream ignored;
     auto opened = open_modelled_site(folder_ / "site.toml", Console{ignored, ignored, false},
                                      ModelKind::hourly);
@@ -39,7 +39,7 @@ class SiteProblemTest : public ::testing::Test {
     return found - problem.parameters.begin();
   }
 
-  testing::TemporaryFolder folder_;
+  recald::testing::TemporaryFolder folder_;
   std::unique_ptr<ModelledSite> modelled_;
 };
 

@@ -11,7 +11,7 @@ namespace recald::daemon {
 namespace {
 
 /// The sample building's 2021 with its electricity and steam.
-std::shared_ptr<const diagnosis::SiteProblem> sample_site() {
+std::shared_ptr<const diagnosis::SiteProblem> sample_problem_site() {
   auto site = std::make_shared<diagnosis::SiteProblem>();
   site->nominal = recald::testing::sample_building();
   site->drivers =
@@ -44,7 +44,7 @@ diagnosis::AddedEffect scale_since_day_200() {
                                .parameters = {},
                                .log_evidence_gain = 9.0,
                                .probability = 0.9};
-  const auto site = sample_site();
+  const auto site = sample_problem_site();
   const auto own = diagnosis::find_effect("scale_fault")->parameters(site->facts());
   added.parameters = {record(own[0].name, own[0].prior, {1.19, 1.2, 1.21}),
                       record("first_day", UniformPrior{21.0, 344.0}, {198.0, 200.0, 202.0})};
@@ -55,7 +55,7 @@ diagnosis::AddedEffect scale_since_day_200() {
 
 // Six months of 2020 lie before the record at hand: 184 days.
 TEST(ModelEffects, BringsDaysFromTheRecordThatTheyWereCountedIn) {
-  const auto effects = make_model_effects({scale_since_day_200()}, sample_site());
+  const auto effects = make_model_effects({scale_since_day_200()}, sample_problem_site());
   ASSERT_TRUE(effects.has_value()) << effects.error().message;
   ASSERT_EQ(effects->draws.cols(), 2);
   EXPECT_EQ(effects->draws(1, 0), 1.2);
@@ -68,7 +68,7 @@ TEST(ModelEffects, BringsDaysFromTheRecordThatTheyWereCountedIn) {
 }
 
 TEST(ModelEffects, MonthlyAndHourlyHaveTheSame) {
-  const auto effects = make_model_effects({scale_since_day_200()}, sample_site());
+  const auto effects = make_model_effects({scale_since_day_200()}, sample_problem_site());
   ASSERT_TRUE(effects.has_value());
   const std::vector<double> eta{1.2, 16.0};
   std::vector<double> meters(24, 100.0);
@@ -85,7 +85,7 @@ TEST(ModelEffects, MonthlyAndHourlyHaveTheSame) {
 
 TEST(ModelEffects, WhatDoesNotFitTheCatalogueOrTheSiteIsASentence) {
   const auto refused = [](diagnosis::AddedEffect added) {
-    const auto effects = make_model_effects({std::move(added)}, sample_site());
+    const auto effects = make_model_effects({std::move(added)}, sample_problem_site());
     return effects ? std::string{} : effects.error().message;
   };
   diagnosis::AddedEffect other_meter = scale_since_day_200();
