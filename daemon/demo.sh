@@ -1,59 +1,54 @@
 #!/bin/sh
-# The main job from nothing: builds recald, invents an office building with three years of
-# 15-minute meters and one thing wrong in it that its drawings do not tell, calibrates its energy
-# model on two years, checks it on the third, and finds what is wrong.
+# The main job from nothing: builds recald, invents an office building with three years of 15-minute meters and one
+# thing wrong in it that its drawings do not tell, calibrates its energy model on two years, checks it on the third,
+# and finds what is wrong.
 #
-#   sh daemon/demo.sh [DIR]     results in DIR, by default .demo/ beside the sources
-#   SEED=7 sh daemon/demo.sh    another building
-#   EFFECT=NAME                 something else is wrong, or none: an effect without a date, of those
-#                               that recald-sim building --list-effects explains
+#   sh daemon/demo.sh [--details] [DIR]   results in DIR, by default .demo/ beside the sources; --details prints all
+#                                         that was printed on the way
+#   SEED=7 sh daemon/demo.sh              another building
+#   EFFECT=NAME                           something else is wrong, or none: an effect without a date, of those that
+#                                         recald-sim building --list-effects explains
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
+details=
+if [ "${1:-}" = --details ]; then
+  details=yes
+  shift
+fi
 dir=${1:-$root/.demo}
 seed=${SEED:-1}
 effect=${EFFECT:-weekend_operation}
+began=$(date +%s)
 
 . "$root/daemon/packages.sh"
-# shellcheck disable=SC2086  # lists of words
-install_packages $BUILD_PACKAGES
+. "$root/daemon/progress.sh"
 
-# An installed recald will do if it is of this version; the simulator is in no package.
+# Installed programs will do if they are of this version.
 version=$(sed -n 's/^project(recald VERSION \([^ ]*\).*/\1/p' "$root/CMakeLists.txt")
 recald=$(command -v recald || true)
-[ -n "$recald" ] && [ "$("$recald" --version)" = "$version" ] || recald=
-
-log=$(mktemp)
-build() {
-  cmake -S "$root" --preset release -DRECALD_TESTS=OFF -DRECALD_WARNINGS_AS_ERRORS=OFF \
-    -DRECALD_TOGETHER=ON -B "$root/.build/demo" &&
-    cmake --build "$root/.build/demo" --target "$@" --parallel "$(build_jobs)"
-}
-
-if [ -n "$recald" ]; then
-  echo "Using $recald, which is recald $version; building the simulator alone …"
-  set -- recald-sim
+sim=$(command -v recald-sim || true)
+if [ -n "$recald" ] && [ -n "$sim" ] && [ "$("$recald" --version)" = "$version" ] &&
+  [ "$("$sim" --version)" = "$version" ]; then
+  echo "Using $recald and $sim, which are of version $version."
 else
-  echo "Building recald; the first time takes some minutes …"
-  recald=$root/.build/demo/daemon/recald
-  set -- recald recald-sim
+  # shellcheck disable=SC2086  # lists of words
+  install_packages $BUILD_PACKAGES
+  mkdir -p "$root/.build"
+  log=$root/.build/demo.log
+  build() {
+    (cd "$root" && cmake --preset release -DRECALD_TESTS=OFF) &&
+      cmake --build "$root/.build/release" --target recald-demo recald-sim-demo --parallel "$(build_jobs)"
+  }
+  echo "Building recald; the first time takes some minutes."
+  with_progress "compiling" "$log" build || {
+    tail -n 40 "$log" >&2
+    echo "The build failed; the last lines are above, all of it in $log." >&2
+    exit 1
+  }
+  recald=$root/.build/release/daemon/recald-demo
+  sim=$root/.build/release/simulators/recald-sim-demo
 fi
-build "$@" >"$log" 2>&1 &
-building=$!
-trap 'kill $building 2>/dev/null; exit 130' INT TERM
-while [ -t 1 ] && kill -0 $building 2>/dev/null; do
-  printf '\r\033[K  %.70s' "$(tail -n 1 "$log")"
-  sleep 1
-done
-[ ! -t 1 ] || printf '\r\033[K'
-wait $building || {
-  tail -n 40 "$log" >&2
-  echo "The build failed; the last lines are above, all of it in $log." >&2
-  exit 1
-}
-trap - INT TERM
-rm -f "$log"
 
-sim=$root/.build/demo/simulators/recald-sim
 mkdir -p "$dir"
 dir=$(cd "$dir" && pwd)
 
@@ -68,7 +63,7 @@ run() {
   fi
 }
 
-echo "Making three years of feeds of an office building (seed $seed) …"
+echo "1 of 4: making three years of meter readings of an office building (seed $seed)"
 {
   echo '[building]'
   echo 'use = "office"'
@@ -77,21 +72,56 @@ echo "Making three years of feeds of an office building (seed $seed) …"
     echo "name = \"$effect\""
   fi
 } >"$dir/scenario.toml"
-"$sim" building --scenario "$dir/scenario.toml" --out "$dir" --years 3 --seed "$seed" >"$dir/building.txt"
-echo "Turning 15-minute readings into months …"
+run building "$sim" building --scenario "$dir/scenario.toml" --out "$dir" --years 3 --seed "$seed"
+# What a month costs, so that a fault has a price.
+cat >>"$dir/site.toml" <<'TARIFF'
+
+[tariff]
+currency = "EUR"
+[tariff.electricity]
+per_kWh = 0.22
+[tariff.chilled_water]
+per_kWh = 0.07
+[tariff.heating]
+per_kWh = 0.11
+TARIFF
+echo "2 of 4: turning 15-minute readings into months"
 run replay "$recald" replay --quiet "$dir/site.toml" --out "$dir"
-echo "Calibrating the model on the first two years …"
+echo "3 of 4: calibrating the model on the first two years"
 run calibrate "$recald" calibrate --quiet "$dir/site.toml" --seed "$seed" --out "$dir"
-echo "Looking for what the drawings do not tell …"
+echo "4 of 4: looking for what the drawings do not tell (about a minute)"
 run diagnose "$recald" diagnose --quiet "$dir/site.toml" --seed "$seed" --out "$dir"
 
+# said EXPRESSION: what sed makes of the lines of the diagnosis.
+said() { sed -n "$1" "$dir/diagnose.txt" | head -n 1; }
+
+hidden=$effect
+[ "$effect" = none ] || hidden=$("$sim" building --list-effects | sed -n "s/^$effect ([^)]*): //p" | head -n 1)
+outcome=$(said 's/^Outcome: \([^.]*\)[.].*/\1/p')
+found=$(said 's/^Outcome: [^.]*[.] *Missing from the model: "\(.*\)"[.]$/\1/p')
+if [ -n "$found" ]; then
+  sure=$(said 's/^ *\([0-9.]* %\)  .*/\1/p'), $(said 's/^Scatter of days .* in the \([0-9]* held-out months\): .*/confirmed on \1/p')
+else
+  found="no single effect ($outcome)"
+  sure=$(sed -n '/^Explanations:/,/^[^ E]/s/^ *\([0-9.]* %\)  \(.*\)/\2 \1/p' "$dir/diagnose.txt" | head -n 3 | paste -sd, | sed 's/,/, /g')
+fi
+error=$(said 's/^Scatter of days [^:]*: \(.*\)[.]$/\1/p' | sed 's/ % before, / → /g; s/ after//g; s/ and /, /g')
+cost=$(said 's/.* It makes about \(.*\)[.] It costs about \(.*\)[.]$/\2, from \1/p' | sed 's/ a month more at / of /g; s/$/ a month/')
+
 echo
-sed -n '1s/^Outcome: [^.]*[.] //p' "$dir/diagnose.txt"
-echo "(Hidden by the simulator: $effect.)"
+echo "Hidden        $hidden"
+echo "Found         $found"
+echo "How sure      $sure"
+echo "Daily error   ${error:-not lowered: nothing was added to the model}"
+echo "Cost          ${cost:-none is known}"
 echo
-echo "Open in a browser: $dir/report.html, $dir/diagnosis.html"
-echo
-echo "Details"
+echo "Pages         $dir/diagnosis.html"
+echo "              $dir/report.html"
+echo "Took          $(minutes $(($(date +%s) - began)))"
+if [ -z "$details" ]; then
+  echo "--details prints all that was found on the way; it is in $dir/*.txt."
+  exit 0
+fi
 echo
 cat "$dir/building.txt" "$dir/calibrate.txt" "$dir/diagnose.txt"
 echo

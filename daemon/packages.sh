@@ -7,13 +7,16 @@ BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libboost-dev libhowardhinnan
   libexpected-dev libmodbus-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev
   libspdlog-dev libsqlite3-dev libssl-dev libsystemd-dev zlib1g-dev libzip-dev libpugixml-dev
   libcurl4-openssl-dev libmosquitto-dev libsnappy-dev libpq-dev"
-TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev chromium r-base-core r-cran-posterior
-  mbpoll python3-pymodbus python3-aiosmtpd python3-venv python3-serial python3-serial-asyncio
-  clang clang-format libclang-rt-14-dev curl systemd mosquitto mosquitto-clients
-  prometheus influxdb postgresql-15 jq"
-
 # To make packages (daemon/packaging), and to check them.
 PACKAGING_PACKAGES="git python3 debhelper mmdebstrap crossbuild-essential-arm64 qemu-user-static umoci lintian crun"
+
+# What tests/run.sh needs besides.
+TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev mbpoll python3-pymodbus python3-aiosmtpd python3-venv
+  python3-serial python3-serial-asyncio curl mosquitto mosquitto-clients postgresql-15"
+
+# What its --surroundings need besides: browsers, other people's programs, fuzzing, and what makes and checks packages.
+SURROUNDINGS_PACKAGES="chromium r-base-core r-cran-posterior clang clang-format libclang-rt-14-dev systemd prometheus
+  influxdb jq binutils $PACKAGING_PACKAGES"
 
 # Those of BUILD_PACKAGES that have headers, a line each.
 dev_packages() {

@@ -1,34 +1,80 @@
 #!/bin/sh
-# All tests, from nothing: installs what is missing, builds, runs. Ends with ctest's own summary.
+# The tests, from nothing: installs what is missing, builds, runs. Ends with ctest's own summary.
 #
-#   sh tests/run.sh              the format of all sources, all tests, fuzz targets for five seconds
-#                                each, and what leads from registers to months under the sanitizers
-#   sh tests/run.sh --plain      all tests alone
-#   sh tests/run.sh --long NAME  one of the longer studies; without NAME: which there are
-#   RECALD_DATA=DIR              measured data of others; tests that need it skip where it is absent
-#   RECALD_CI=1                  a test that skips fails the run, unless tests/skips.txt lists it
+#   sh tests/run.sh                  that the program works: unit and property tests, scenarios, whole runs
+#   sh tests/run.sh --surroundings   what is around it: the format of the sources, fuzz targets for five seconds each,
+#                                    sanitizers, packages, documentation pages in a shell, pages in a browser, other
+#                                    people's programs, blind populations
+#   sh tests/run.sh --long NAME      one of the longer studies; without NAME: which there are
+#   RECALD_DATA=DIR                  measured data of others; tests that need it skip where it is absent
+#   RECALD_CI=1                      a test that skips fails the run, unless tests/skips.txt lists it
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 
 . "$root/daemon/packages.sh"
+. "$root/daemon/progress.sh"
+
+case ${1:-} in
+  "" | --surroundings | --long) ;;
+  *)
+    sed -n '2,/^set/s/^# \{0,1\}//p' "$0" | sed '$d' >&2
+    exit 2
+    ;;
+esac
+part=${1:-}
 
 begin=$(date +%s)
+name=
 stage() {
   now=$(date +%s)
-  [ -z "${name:-}" ] || echo "--- $name: $((now - since)) s"
+  [ -z "$name" ] || echo "--- $name: $(minutes $((now - since)))"
   name=$1
   since=$now
   [ -z "$name" ] || echo "--- $name"
 }
 
-stage "Debian packages"
-long=
-[ "${1:-}" != "--long" ] || long="python3 clang-tidy"
-# shellcheck disable=SC2086  # lists of words
-install_packages $BUILD_PACKAGES $TEST_PACKAGES $PACKAGING_PACKAGES $long
+failed=
+logs=
+mkdir -p "$root/.build"
 
-if [ "${1:-}" = "--long" ]; then
+# build PRESET TARGETS…: the end of its log where it fails, and no more is done.
+build() {
+  preset=$1
+  shift
+  cmake --preset "$preset" >"$root/.build/$preset-cmake.log" 2>&1 || {
+    tail -n 30 "$root/.build/$preset-cmake.log" >&2
+    exit 1
+  }
+  with_progress "compiling" "$root/.build/$preset-build.log" \
+    cmake --build --preset "$preset" --target "$@" --parallel "$(build_jobs)" || {
+    grep -E -A 12 'error:|FAILED' "$root/.build/$preset-build.log" | head -n 60 >&2
+    tail -n 10 "$root/.build/$preset-build.log" >&2
+    echo "The build failed; all of it is in .build/$preset-build.log." >&2
+    exit 1
+  }
+}
+
+# run_tests PRESET OPTIONS OF CTEST…: what failed with its output, then ctest's own summary.
+run_tests() {
+  preset=$1
+  shift
+  log=$root/.build/$preset-tests.log
+  logs="$logs $log"
+  # Three at a time on two cores: whole runs of the daemon wait for their virtual clocks. Behind everything else: the
+  # daemon calibrates at the lowest priority and would wait for every other test to end.
+  with_progress "tests" "$log" nice -n 19 ctest --preset "$preset" -j $(($(nproc) + 1)) "$@" || {
+    failed="$failed $preset"
+    awk '/^ *[0-9]+\/[0-9]+ Test/ { shown = /\*\*\*(Failed|Timeout|Exception|Not Run)/ } shown' "$log" | tail -n 400
+  }
+  sed -n '/tests passed, .* tests failed out of/,$p' "$log" | sed '/^Label Time Summary/,/^Total Test time/{/^Total/!d}' |
+    sed '/did not run:/,/^$/d'
+}
+
+if [ "$part" = "--long" ]; then
+  stage "Debian packages"
+  # shellcheck disable=SC2086  # lists of words
+  install_packages $BUILD_PACKAGES $TEST_PACKAGES $SURROUNDINGS_PACKAGES python3 clang-tidy
   study=$root/tests/long/${2:-}.sh
   if [ -z "${2:-}" ] || [ ! -f "$study" ]; then
     echo "Long studies:" >&2
@@ -37,8 +83,7 @@ if [ "${1:-}" = "--long" ]; then
   fi
   if [ "$2" != fuzz ] && [ "$2" != tidy ]; then  # which need another compiler, or none
     stage "build (release)"
-    cmake --preset release >/dev/null
-    cmake --build --preset release --target recald recald-sim --parallel "$(build_jobs)"
+    build release recald recald-sim
   fi
   stage "$2"
   sh "$study" "$root/.build/release"
@@ -46,8 +91,21 @@ if [ "${1:-}" = "--long" ]; then
   exit 0
 fi
 
-if [ "${1:-}" != "--plain" ]; then
-  stage "format"
+if [ -z "$part" ]; then
+  stage "1 of 3: Debian packages"
+  # shellcheck disable=SC2086  # lists of words
+  install_packages $BUILD_PACKAGES $TEST_PACKAGES
+  stage "2 of 3: build (optimised where it computes, assertions on, warnings are errors)"
+  build test tests recald recald-sim
+  stage "3 of 3: tests"
+  run_tests test -LE surroundings
+  stage ""
+else
+  stage "1 of 7: Debian packages"
+  # shellcheck disable=SC2086  # lists of words
+  install_packages $BUILD_PACKAGES $TEST_PACKAGES $SURROUNDINGS_PACKAGES
+
+  stage "2 of 7: format"
   sources=$(find core adapters daemon simulators tests -name '*.cpp' -o -name '*.hpp')
   # shellcheck disable=SC2086  # a list of words
   unformatted=$(printf '%s\n' $sources | xargs -P "$(nproc)" -n 50 clang-format --dry-run 2>&1 |
@@ -58,59 +116,42 @@ if [ "${1:-}" != "--plain" ]; then
     done
     exit 1
   fi
-fi
 
-failed=
-logs=
-part=all
-# instrumented PRESET [OPTIONS OF CTEST…]: what leads from registers to months, built with a sanitizer
-# and run.
-instrumented() {
-  preset=$1
-  shift
-  stage "$preset"
-  cmake --preset "$preset" >/dev/null
-  cmake --build --preset "$preset" --target ingestion_tests --parallel "$(build_jobs)"
-  # All 300 kills happen below; under a sanitizer each takes ten times as long.
-  logs="$logs .build/$preset/ctest.log"
-  RECALD_KILLS=40 ctest --preset "$preset" -j $(($(nproc) + 1)) \
-    --output-log "$root/.build/$preset/ctest.log" "$@" || failed="$failed $preset"
-}
-
-if [ "${1:-}" != "--plain" ]; then
-  stage "fuzz (5 s each)"
-  mkdir -p "$root/.build"
+  stage "3 of 7: fuzz (5 s each)"
   fuzz_log=$root/.build/fuzz.log
-  sh "$root/tests/fuzz/run.sh" 5 >"$fuzz_log" 2>&1 || failed="$failed fuzz"
+  with_progress "fuzz" "$fuzz_log" sh "$root/tests/fuzz/run.sh" 5 || failed="$failed fuzz"
   grep -a 'nothing found\|FOUND' "$fuzz_log" || true
-  instrumented asan
+
+  # What leads from registers to months. All 300 kills are in the tests above; under a sanitizer each takes ten times
+  # as long.
+  stage "4 of 7: AddressSanitizer and UBSan"
+  build asan tests
+  RECALD_KILLS=40 run_tests asan
+  stage "5 of 7: ThreadSanitizer"
+  build tsan tests
   # What differs from the other scenarios by its dates, or by what comes late or not at all, has the same threads.
-  instrumented tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy"
-  part=rest  # what a sanitizer has watched need not run again
+  RECALD_KILLS=40 run_tests tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy"
+
+  stage "6 of 7: packages and programs"
+  with_progress "package" "$root/.build/package.log" \
+    sh "$root/daemon/packaging/make_deb.sh" "$(dpkg --print-architecture)" "$root/.build/packages" || {
+    tail -n 30 "$root/.build/package.log" >&2
+    failed="$failed package"
+  }
+  build test surroundings recald recald-sim
+  stage "7 of 7: tests of the surroundings"
+  run_tests test -L surroundings
+  stage ""
 fi
-
-stage "package (amd64)"
-sh "$root/daemon/packaging/make_deb.sh" amd64 "$root/.build/packages" || failed="$failed package"
-
-stage "build (dev: optimised, assertions on, warnings are errors)"
-cmake --preset dev -DRECALD_PART=$part >/dev/null
-cmake --build --preset dev --parallel "$(build_jobs)"
-stage ""
-echo "--- tests, after $(($(date +%s) - begin)) s for all of the above"
-# Three at a time on two cores: whole runs of the daemon wait for their virtual clocks. Behind everything else: the
-# daemon calibrates at the lowest priority and would wait for every other test to end. ctest's own summary is the
-# last word, unless something failed before.
-logs="$logs .build/dev/ctest.log"
-nice -n 19 ctest --preset dev -j $(($(nproc) + 1)) --output-log "$root/.build/dev/ctest.log" ||
-  failed="$failed tests"
+echo "--- $(minutes $(($(date +%s) - begin))) in all"
 
 # A test that skips shows nothing, in whichever run. Those of tests/skips.txt may; in CI (RECALD_CI=1) no other.
 # shellcheck disable=SC2086  # a list of files
 skipped=$(sed -n 's/.*Test  *#[0-9]*: \([^ ]*\).*\*\*\*Skipped.*/\1/p' $logs | sort -u)
 if [ -n "$skipped" ]; then
-  echo "Skipped:"
-  printf '  %s\n' $skipped
   unexpected=$(printf '%s\n' $skipped | grep -v -E -x -f "$root/tests/skips.txt" || true)
+  expected=$(printf '%s\n' $skipped | grep -c -E -x -f "$root/tests/skips.txt" || true)
+  [ "$expected" = 0 ] || echo "$expected skipped: most need measurements of others; tests/data/README.md says where to get them."
   if [ -n "$unexpected" ]; then
     echo "Skipped although nothing says that it may (tests/skips.txt):" $unexpected >&2
     [ -z "${RECALD_CI:-}" ] || failed="$failed skipped"
