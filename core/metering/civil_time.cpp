@@ -9,6 +9,9 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "core/text/ascii.hpp"
+#include "core/text/nearest.hpp"
+
 namespace recald::metering {
 namespace {
 
@@ -33,6 +36,22 @@ std::vector<OffsetSpan> offsets_of(const date::time_zone& zone) {
   return offsets;
 }
 
+/// "berlin" of Europe/Berlin
+std::string city_of(std::string_view zone_name) {
+  return to_lower(zone_name.substr(zone_name.rfind('/') + 1));
+}
+
+/// The zone whose city is called most alike: the part of the world says little of what was meant.
+std::string zone_like(std::string_view zone_name) {
+  const auto& zones = date::get_tzdb().zones;
+  std::vector<std::string> cities;
+  for (const date::time_zone& zone : zones) cities.push_back(city_of(zone.name()));
+  const std::vector<std::string_view> names(cities.begin(), cities.end());
+  const std::string_view nearest = nearest_name(city_of(zone_name), names);
+  if (nearest.empty()) return {};
+  return zones[static_cast<std::size_t>(std::ranges::find(names, nearest) - names.begin())].name();
+}
+
 int parse_digits(std::string_view text) {
   int value = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -49,9 +68,13 @@ Result<LocalCalendar> LocalCalendar::open(std::string_view zone_name) {
     calendar.offsets_ = offsets_of(*date::locate_zone(std::string{zone_name}));
     return calendar;
   } catch (const std::runtime_error&) {
-    return failure(ErrorCode::not_found, "time zone '" + std::string{zone_name} +
-                                             "' is not in this system's zone files; use an IANA "
-                                             "name such as America/New_York");
+    const std::string like = zone_like(zone_name);
+    std::string message = "time zone '";
+    message += zone_name;
+    message += "' is not in this system's zone files; ";
+    message +=
+        like.empty() ? "use an IANA name such as America/New_York" : "did you mean '" + like + "'?";
+    return failure(ErrorCode::not_found, std::move(message));
   }
 }
 

@@ -101,6 +101,16 @@ TEST(LocalCalendar, UnknownZoneIsOneSentence) {
   EXPECT_FALSE(LocalCalendar::open("").has_value());
 }
 
+TEST(LocalCalendar, AMisspeltZoneGetsTheNearest) {
+  for (const auto& [zone, meant] :
+       {std::pair{"Europe/Berln", "Europe/Berlin"}, std::pair{"berlin", "Europe/Berlin"},
+        std::pair{"Europe/Chicago", "America/Chicago"}}) {
+    EXPECT_EQ(LocalCalendar::open(zone).error().message,
+              std::string{"time zone '"} + zone +
+                  "' is not in this system's zone files; did you mean '" + meant + "'?");
+  }
+}
+
 TEST(MonthArithmetic, CrossesYears) {
   EXPECT_EQ(next_month(month(2021, 12)), month(2022, 1));
   EXPECT_EQ(previous_month(month(2022, 1)), month(2021, 12));

@@ -201,8 +201,8 @@ const Mistake kSiteMistakes[] = {
     {"NumberBeyondItsRange", "latitude_deg = 47.4", "latitude_deg = 474", "474",
      "[site] 'latitude_deg' is 474; it must be between -90 and 90"},
     {"UnknownZone", "Europe/Zurich", "Europe/Zurick", "Zurick",
-     "[site] time zone 'Europe/Zurick' is not in this system's zone files; use an IANA name such "
-     "as America/New_York"},
+     "[site] time zone 'Europe/Zurick' is not in this system's zone files; did you mean "
+     "'Europe/Zurich'?"},
     {"BadDuration", "\"72h\"", "\"3 days\"", "3 days",
      "[site] 'watermark' is \"3 days\"; write a duration such as \"15m\" or \"72h\""},
     {"IntervalThatDividesNoHour", "interval = \"15m\"", "interval = \"20m\"", "20m",
