@@ -72,9 +72,11 @@ struct Confusable {
 
 struct Effect {
   std::string_view id;
-  std::string_view title;    ///< "Night set-back missing"
-  std::string_view meaning;  ///< For the people in the building, in one or two sentences.
-  std::string_view physics;  ///< The equation as text, with units.
+  std::string_view title;      ///< "Night set-back missing"
+  std::string_view meaning;    ///< For the people in the building, in one or two sentences.
+  std::string_view physics;    ///< The equation as text, with units.
+  std::string_view on_meters;  ///< What meters show of it, in one sentence.
+  std::string_view check;      ///< Where in the building to look first.
   EffectClass effect_class;
   Dating dating = Dating::always;
   /// Changes what one meter records, not the building. There is one candidate per meter of these

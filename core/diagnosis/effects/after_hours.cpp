@@ -44,6 +44,11 @@ Effect after_hours() {
           "On working days fans, heating and cooling keep running after the end of the timetable, "
           "for instance because nobody has cancelled an override.",
       .physics = "t_off [h] = t_off,drawn + Δh on days with plant operation; Δh [h] ≥ 0",
+      .on_meters =
+          "Electricity, heating and cooling fall some hours later than the timetable says, on "
+          "working days only.",
+      .check =
+          "The overrides and the stop time in the building controls, and fan status after hours.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable = {{"dst_misapplied",

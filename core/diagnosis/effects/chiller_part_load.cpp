@@ -80,6 +80,10 @@ Effect chiller_part_load() {
           .physics =
               "power = cooling/COP x (1 + p (1/r - 1)) x (1 + c (T_cw - 30 C)); r load over "
               "design load, at least 0.1; T_cw = max(T_out + 5 K, 20 C); p in -, c in 1/K",
+          .on_meters =
+              "Electricity rises more than chilled water on mild days and in warm weather; other "
+              "meters stay the same.",
+          .check = "The staging, the minimum load and the condenser water of the chiller.",
           .effect_class = EffectClass::plant,
           .dating = Dating::may_begin,
           .needs = {.own_chiller = true},

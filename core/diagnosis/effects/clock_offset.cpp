@@ -51,6 +51,12 @@ Effect clock_offset() {
           "Everything this meter shows happened earlier or later than its time stamps say: the "
           "clock or time zone is wrong, or the stamps mark the end of the interval.",
       .physics = "y(t + D); y recorded power in kW, D in h, between intervals linear",
+      .on_meters =
+          "The profile of one meter is moved by the same time on all days; its energy stays the "
+          "same.",
+      .check =
+          "The clock and the time zone of this meter and its logger, and whether its stamps mark "
+          "starts or ends.",
       .effect_class = EffectClass::meter,
       .dating = Dating::may_begin,
       .of_one_meter = true,

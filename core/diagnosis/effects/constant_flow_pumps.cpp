@@ -107,6 +107,11 @@ Effect constant_flow_pumps() {
       .physics =
           "P_pumps [kW] += P_p·plant(t); plant: 1 in all, the warm or the cold months, else "
           "0; P_p [kW] ≥ 0",
+      .on_meters =
+          "Electricity is higher by the same amount at all hours of a season; heat and chilled "
+          "water stay the same.",
+      .check =
+          "The pumps' drives and valves: whether pumps run when nothing calls for heat or cooling.",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .confusable =

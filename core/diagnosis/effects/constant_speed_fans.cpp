@@ -41,6 +41,10 @@ Effect constant_speed_fans() {
           "The fans always run at full power, although the boxes need less air: speed drives are "
           "missing, bypassed or locked.",
       .physics = "fan power share g(r) ← (1−f)·g(r) + f, r flow over design flow [–]; f [–] 0…1",
+      .on_meters =
+          "Electricity is flat while the plant runs, and higher on mild days; heat and chilled "
+          "water hardly change.",
+      .check = "The fans' speed drives: bypassed, locked by hand, or missing.",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .needs = {.reheat_boxes = true},

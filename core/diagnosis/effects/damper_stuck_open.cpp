@@ -63,6 +63,12 @@ Effect damper_stuck_open() {
       .physics =
           "fans on: V_oa [m³/s] ≥ φ·V_supply; or fans off: V_oa = φ·V_oa,day, straight into the "
           "rooms; φ [–] 0…0.9",
+      .on_meters =
+          "Heat rises in cold weather and chilled water in humid weather, while the fans run or "
+          "while they are off.",
+      .check =
+          "The outdoor-air dampers, by eye: whether each follows its signal and closes when its "
+          "fan stops.",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
       .needs = {.air_system = true},

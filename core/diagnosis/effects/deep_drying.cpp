@@ -49,6 +49,8 @@ Effect deep_drying() {
           "Q_latent [W] = ρ V_oa h_fg·max(w_o − (w_s − x), 0) while the coil cools, V_oa [m³/s], "
           "h_fg [J/kg], w [kg/kg]; x [kg/kg] ≥ 0; with units in the rooms, of what passes through "
           "their coils",
+      .on_meters = "Chilled water rises on humid days only; heat stays the same.",
+      .check = "The set-point of the coils' leaving air, and a humidity sensor behind one of them.",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .needs = {.air_system = true, .humidity = true},

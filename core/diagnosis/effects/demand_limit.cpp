@@ -120,6 +120,10 @@ Effect demand_limit() {
               "lights, plugs and fans x (1 - a) from 13 to 18 h, x (1 + rho a) from 18 to "
               "20 h, on working days warmer than T_a in the afternoon; a, rho in -, T_a in "
               "degC",
+          .on_meters =
+              "Electricity falls on the hottest working afternoons and partly comes back in the "
+              "evening.",
+          .check = "The demand limit in the building controls, and the utility's list of events.",
           .effect_class = EffectClass::electrical,
           .dating = Dating::may_begin,
           .confusable = {{"constant_speed_fans",

@@ -59,6 +59,10 @@ Effect demand_ventilation() {
       .physics =
           "V_oa [m³/s] = V_oa,drawn·((1−b) + b·occ), occ people present [–] 0…1, b [–] 0…1, in "
           "handlers of daytime rooms",
+      .on_meters =
+          "Heat and chilled water follow the number of people: less on quiet days and in quiet "
+          "hours.",
+      .check = "Whether CO2 sensors drive the outdoor-air dampers.",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
       .confusable =

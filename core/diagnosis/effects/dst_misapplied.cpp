@@ -93,6 +93,12 @@ Effect dst_misapplied() {
           .physics =
               "y(t + D) while daylight saving is on, here or, where it never is, in most places "
               "of the continent, all meters; y recorded power in kW, D in h",
+          .on_meters =
+              "All profiles are one hour off from spring to autumn and right in winter; no energy "
+              "is missing.",
+          .check =
+              "Whether the logger, the meters and the building controls change their clocks on the "
+              "same dates.",
           .effect_class = EffectClass::meter,
           .dating = Dating::may_begin,
           .confusable = {{"after_hours",

@@ -54,6 +54,10 @@ Effect early_start() {
       .physics =
           "t_on [h] = t_on,drawn − (Δh_0 + b·max(θ_heat,occ − θ_e, 0)); Δh_0 [h] ≥ 0, "
           "b [h/K] ≥ 0, θ_e outdoor air [°C] of the hour",
+      .on_meters =
+          "Electricity and heat rise before the timetable says, earlier on colder mornings; the "
+          "evening stays the same.",
+      .check = "The start time and the optimum-start setting in the building controls.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable = {{"thermal_mass",

@@ -41,6 +41,12 @@ Effect economiser_changeover() {
           "The dampers return to their minimum position at the wrong outdoor temperature: either "
           "free cooling stops too early, or warm and humid air is let in.",
       .physics = "θ_lockout [°C] = θ_lockout,drawn + x; x [K]",
+      .on_meters =
+          "Chilled water changes within some kelvin of outdoor temperature, near the change-over; "
+          "heat hardly changes.",
+      .check =
+          "The change-over temperature or enthalpy in the controls, and the outdoor sensor that "
+          "decides it.",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
       .needs = {.air_system = true, .economiser = true},

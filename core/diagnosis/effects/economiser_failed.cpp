@@ -41,6 +41,10 @@ Effect economiser_failed() {
           "On mild days chilled water cools the building although cool outdoor air could do it for "
           "free: the dampers do not open beyond their minimum position.",
       .physics = "free-cooling flow [m³/s] ×(1−f); f [–] 0…1, 1: no free cooling",
+      .on_meters =
+          "Chilled water is used on cool days, when it should be near zero; heat stays the same.",
+      .check =
+          "The dampers on a dry, cool morning: whether they open beyond their minimum position.",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
       .needs = {.air_system = true, .economiser = true},

@@ -79,6 +79,9 @@ Effect equipment_step() {
       .physics =
           "lights and plugs + dP s(t) from the date; s = 1 - b + b u/mean u, u what they are above "
           "their least of the month; dP mean power in kW, b in -",
+      .on_meters =
+          "Electricity is higher or lower from one day on; chilled water and heat follow a little.",
+      .check = "What was installed, removed or retrofitted around that date.",
       .effect_class = EffectClass::electrical,
       .dating = Dating::must_begin,
       .confusable =

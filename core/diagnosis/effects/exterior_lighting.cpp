@@ -72,6 +72,10 @@ Effect exterior_lighting() {
       .physics =
           "exterior + P while the sun is below -2 degrees, plug profile - m P x mean "
           "dark share of the hour; P in kW, m in -",
+      .on_meters =
+          "Electricity is higher from dusk to dawn, longer in winter; no other meter changes.",
+      .check =
+          "Which street, facade or car-park lights hang on this meter, and what switches them.",
       .effect_class = EffectClass::electrical,
       .dating = Dating::may_begin,
       .confusable =

@@ -68,6 +68,12 @@ Effect fouling() {
           .physics =
               "cost of cooling x (1 + r years); years since fouling began or since the last "
               "cleaning, r in 1/year",
+          .on_meters =
+              "Electricity, or chilled water where it is bought, rises year by year for the same "
+              "cooling; a cleaning ends it.",
+          .check =
+              "The chiller's approach temperatures, the tower, the coils and the filters; the date "
+              "of the last cleaning.",
           .effect_class = EffectClass::plant,
           .confusable = {{"scale_fault",
                           "Compare two summers: a wrong scale is constant, fouling grows."},

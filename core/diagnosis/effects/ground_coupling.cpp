@@ -139,6 +139,10 @@ Effect ground_coupling() {
       .physics =
           "Q = H_g (T_in - T_g), T_g = mean - A exp(-2 pi lag/365) cos(2 pi (day - "
           "coldest - lag)/365); H_g in W/K, lag in days, A swing of the outdoor air, K",
+      .on_meters = "Heat is higher in spring than in autumn at the same outdoor temperature.",
+      .check =
+          "The insulation of basement walls and slab, and the temperature of basement rooms in "
+          "April.",
       .effect_class = EffectClass::envelope,
       .dating = Dating::may_begin,
       .confusable =

@@ -53,25 +53,29 @@ std::unique_ptr<model::hourly::Alteration> bind_heat_pump_defrost(const SiteFact
 }  // namespace
 
 Effect heat_pump_defrost() {
-  return {.id = "heat_pump_defrost",
-          .title = "Heat pump loses efficiency to frost",
-          .meaning =
-              "In damp weather around freezing, the heat pump has to defrost its outdoor coil "
-              "often and uses more electricity for the same heat.",
-          .physics =
-              "COP x (1 - d exp(-(T_out - 1 C)^2 / 18 K2) m); m = (RH - 0.5)/0.4 within "
-              "0...1, d in -",
-          .effect_class = EffectClass::plant,
-          .dating = Dating::may_begin,
-          .needs = {.humidity = true, .heat_pump = true},
-          .confusable =
-              {{"humidifier",
-                "Compare electricity at 1 °C in damp and in dry weather: frost needs damp air, "
-                "humidifiers run in dry air."},
-               {"stack_infiltration",
-                "Electricity at -10 °C: frost costs nothing then, and draught is at its worst."}},
-          .parameters = parameters_of_heat_pump_defrost,
-          .bind = bind_heat_pump_defrost};
+  return {
+      .id = "heat_pump_defrost",
+      .title = "Heat pump loses efficiency to frost",
+      .meaning =
+          "In damp weather around freezing, the heat pump has to defrost its outdoor coil "
+          "often and uses more electricity for the same heat.",
+      .physics =
+          "COP x (1 - d exp(-(T_out - 1 C)^2 / 18 K2) m); m = (RH - 0.5)/0.4 within "
+          "0...1, d in -",
+      .on_meters =
+          "Electricity rises on damp days around freezing, and not in dry or much colder weather.",
+      .check = "The outdoor coil and the defrost control, on a damp day around 1 °C.",
+      .effect_class = EffectClass::plant,
+      .dating = Dating::may_begin,
+      .needs = {.humidity = true, .heat_pump = true},
+      .confusable =
+          {{"humidifier",
+            "Compare electricity at 1 °C in damp and in dry weather: frost needs damp air, "
+            "humidifiers run in dry air."},
+           {"stack_infiltration",
+            "Electricity at -10 °C: frost costs nothing then, and draught is at its worst."}},
+      .parameters = parameters_of_heat_pump_defrost,
+      .bind = bind_heat_pump_defrost};
 }
 
 }  // namespace recald::diagnosis::effects

@@ -58,6 +58,9 @@ Effect humidifier() {
       .physics =
           "Q [W] = f·ρ V_oa h_fg·max(w_set − w_o, 0), V_oa [m³/s], h_fg [J/kg], w [kg/kg]; f [–] "
           "0…1",
+      .on_meters =
+          "Heat rises on dry, mostly cold days while the fans run; chilled water stays the same.",
+      .check = "The humidifiers in the air handlers, and their set-points.",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .needs = {.air_system = true, .humidity = true},

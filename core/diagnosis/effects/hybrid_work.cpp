@@ -63,6 +63,10 @@ Effect hybrid_work() {
       .physics =
           "people [–] ×(1+c_d), lights and plugs above their least of the month [W] "
           "×(1+0.8c_d); c_Tue…Thu = c−h, c_Mon = −1.5c+m−h, c_Fri = −1.5c−m−h; c, h, m [–]",
+      .on_meters =
+          "Electricity is lower on some weekdays, mostly Mondays and Fridays; cooling is a little "
+          "lower too.",
+      .check = "Counts of badges, Wi-Fi clients or lift rides by weekday.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable =

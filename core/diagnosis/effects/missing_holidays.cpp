@@ -115,6 +115,10 @@ Effect missing_holidays() {
       .physics =
           "on public holidays that the calendar has as workdays: on ×(1−a); people [–], "
           "lights [W] and plugs [W] move by a towards their Sunday values; a [–] 0…1",
+      .on_meters =
+          "All meters show a weekend profile on single dates that the model takes for working "
+          "days.",
+      .check = "The site's list of holidays against the dates on which the building was closed.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable =

@@ -43,6 +43,12 @@ Effect night_setback_missing() {
       .physics =
           "θ_unocc [°C] = θ_unocc,drawn + f·(θ_occ − θ_unocc,drawn), for heating and "
           "cooling; f [–] 0…1, 0: set-back as drawn, 1: none",
+      .on_meters =
+          "Heat and chilled water stay high at night and on weekends, and the peak of the morning "
+          "start is small.",
+      .check =
+          "The unoccupied set-points in the controls, and a room temperature logger over one "
+          "night.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .needs = {.night_set_back = true},

@@ -41,6 +41,11 @@ Effect outdoor_air_amount() {
           "While the fans run they bring in more, or less, outdoor air than the drawings say, so "
           "more or less air has to be heated, cooled and dehumidified.",
       .physics = "V_oa [m³/s] = V_oa,drawn·(1+a); a [–] −0.9…1.5",
+      .on_meters =
+          "Heat in cold weather and chilled water in hot weather differ together while the fans "
+          "run.",
+      .check =
+          "The minimum position of the outdoor-air dampers, and the measured outdoor air flow.",
       .effect_class = EffectClass::outdoor_air,
       .dating = Dating::may_begin,
       .confusable =

@@ -51,6 +51,12 @@ Effect phase_lost() {
           .physics =
               "y x (1 - a) from the date; y recorded power in kW, a = 1/3 one phase lost, "
               "2/3 one reversed or two lost",
+          .on_meters =
+              "The electricity meter reads a third or two thirds less from one day on; no other "
+              "meter changes.",
+          .check =
+              "The currents of the three phases with a clamp meter, the fuses of the voltage taps "
+              "and the direction of the transformers.",
           .effect_class = EffectClass::meter,
           .dating = Dating::must_begin,
           .of_one_meter = true,

@@ -41,21 +41,26 @@ std::unique_ptr<model::hourly::Alteration> bind_plug_growth(const SiteFacts& fac
 }  // namespace
 
 Effect plug_growth() {
-  return {.id = "plug_growth",
-          .title = "Plug loads drift over the years",
-          .meaning =
-              "The number of plugged-in devices grows (or falls) year by year, at all hours, and "
-              "with it the heat they give off.",
-          .physics =
-              "plugs x (1 + g (t - t_mid)); t in years, t_mid middle of the record, g in "
-              "1/year",
-          .effect_class = EffectClass::electrical,
-          .confusable =
-              {{"equipment_step",
-                "Electricity at night over the year: drift grows steadily, a step stays constant."},
-               {"fouling", "Electricity on winter weekends: plugs also drift then."}},
-          .parameters = parameters_of_plug_growth,
-          .bind = bind_plug_growth};
+  return {
+      .id = "plug_growth",
+      .title = "Plug loads drift over the years",
+      .meaning =
+          "The number of plugged-in devices grows (or falls) year by year, at all hours, and "
+          "with it the heat they give off.",
+      .physics =
+          "plugs x (1 + g (t - t_mid)); t in years, t_mid middle of the record, g in "
+          "1/year",
+      .on_meters =
+          "Electricity drifts steadily over the years at all hours; chilled water rises and heat "
+          "falls a little with it.",
+      .check = "What was plugged in over these years: compare electricity at night, year by year.",
+      .effect_class = EffectClass::electrical,
+      .confusable =
+          {{"equipment_step",
+            "Electricity at night over the year: drift grows steadily, a step stays constant."},
+           {"fouling", "Electricity on winter weekends: plugs also drift then."}},
+      .parameters = parameters_of_plug_growth,
+      .bind = bind_plug_growth};
 }
 
 }  // namespace recald::diagnosis::effects

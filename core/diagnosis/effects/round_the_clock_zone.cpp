@@ -45,6 +45,11 @@ Effect round_the_clock_zone() {
       .physics =
           "on = max(on, φ) at all hours; φ [–] 0…0.6: share of the rooms drawn as daytime "
           "rooms that keeps its occupied set-points and air flow",
+      .on_meters =
+          "Electricity, heat and chilled water are higher at night and on weekends, all together.",
+      .check =
+          "Which rooms have air day and night: laboratories, control rooms, a zone with an "
+          "override.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable =

@@ -45,6 +45,12 @@ Effect scale_fault() {
               "The meter reads too high or too low by the same percentage at every hour: a wrong "
               "pulse value, transformer ratio or flow constant.",
           .physics = "y x k; y recorded power in kW, k in -",
+          .on_meters =
+              "One meter is wrong by the same percentage at every hour; the other meters stay the "
+              "same.",
+          .check =
+              "The pulse value, the transformer ratio or the flow constant, against the meter's "
+              "own display.",
           .effect_class = EffectClass::meter,
           .dating = Dating::may_begin,
           .of_one_meter = true,

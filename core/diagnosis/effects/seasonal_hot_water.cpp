@@ -66,6 +66,12 @@ Effect seasonal_hot_water() {
           "Q = V rho c a + M d (1 + a/45 K) + L, a = -A cos(2 pi (day - 230)/365); V drawn use in "
           "m3/s, M mean heat of the use beside it in kW, d use of the hour over its mean, A half "
           "the yearly swing of the mains in K, L loop loss in kW before efficiencies",
+      .on_meters =
+          "Heat is higher all year and more so in winter, with the hours of hot-water use; chilled "
+          "water stays the same.",
+      .check =
+          "The hot-water sub-meter and the circulation loop: its pump, its insulation, its use in "
+          "summer.",
       .effect_class = EffectClass::plant,
       .dating = Dating::may_begin,
       .confusable = {{"steam_trap_leak",

@@ -112,6 +112,10 @@ Effect semester_calendar() {
       .physics =
           "in term breaks: people [–] ×(1−a), lights and plugs above their least of the "
           "month [W] ×(1−0.8a); a [–] 0…0.7",
+      .on_meters =
+          "Electricity and chilled water are lower for the weeks of term breaks, each year again; "
+          "heat is higher in winter.",
+      .check = "The academic calendar of the building's users.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable = {{"vacancy", "Whether it returns next year on the same term dates."},

@@ -72,6 +72,10 @@ Effect server_room() {
       .physics =
           "electricity + P, chilled water + c P, heat into rooms + (1 - c) P, plug "
           "profile - m P; P in kW at all hours, c and m in -",
+      .on_meters =
+          "Electricity and chilled water are higher by the same amount at all hours, on winter "
+          "nights too; heat is lower.",
+      .check = "Rooms with computers and their own cooling: a clamp meter on the feeder.",
       .effect_class = EffectClass::electrical,
       .dating = Dating::may_begin,
       .confusable = {{"round_the_clock_zone",

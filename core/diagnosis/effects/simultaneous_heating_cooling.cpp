@@ -60,6 +60,10 @@ Effect simultaneous_heating_cooling() {
       .physics =
           "Q_cool [kW] += w, Q_heat [kW] += w, w = max(q·on − Q_wanted, 0); Q_wanted: by reheat "
           "and rooms; on: share of the air handlers that runs [–]; q [kW] ≥ 0",
+      .on_meters = "Heat and chilled water rise together while the fans run, in hot weather too.",
+      .check =
+          "The heating valves and reheat coils: close them for an hour and see whether both meters "
+          "fall.",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .needs = {.air_system = true},

@@ -61,6 +61,10 @@ Effect solar_gain_change() {
       .physics =
           "solar gain x (1 - a) in hours with more than I0 on the horizontal, coming in "
           "over the 100 W/m2 below; a in -, I0 in W/m2",
+      .on_meters =
+          "Chilled water differs in sunny hours, and heat in winter the other way; electricity "
+          "hardly changes.",
+      .check = "Blinds and films, trees and buildings in front of the windows.",
       .effect_class = EffectClass::envelope,
       .dating = Dating::may_begin,
       .needs = {.sun = true},

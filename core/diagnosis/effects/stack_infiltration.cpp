@@ -62,6 +62,8 @@ Effect stack_infiltration() {
       .physics =
           "infiltration x (1 + k sqrt(h dT / (10 m x 10 K))); h building height in m, "
           "dT between indoors and outdoors in K, k in -",
+      .on_meters = "Heat rises faster and faster as it gets colder, fans on or off, at any wind.",
+      .check = "Doors at the bottom and vents at the top of shafts and stairs, on a cold day.",
       .effect_class = EffectClass::envelope,
       .dating = Dating::may_begin,
       .confusable =

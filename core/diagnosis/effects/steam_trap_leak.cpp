@@ -37,23 +37,27 @@ std::unique_ptr<model::hourly::Alteration> bind_steam_trap_leak(const SiteFacts&
 }  // namespace
 
 Effect steam_trap_leak() {
-  return {.id = "steam_trap_leak",
-          .title = "Steam or heat leaks in the pipes",
-          .meaning =
-              "Heat is used day and night, even in summer, without heating any room: steam traps "
-              "stuck open, bare pipes or a leaking valve.",
-          .physics = "heat meter + L at all hours; L in kW as metered",
-          .effect_class = EffectClass::plant,
-          .dating = Dating::may_begin,
-          .confusable =
-              {{"seasonal_hot_water",
-                "Close the hot-water loop's valve for a summer night and read the heat meter."},
-               {"simultaneous_heating_cooling",
-                "Chilled water on the same nights: reheat raises both, a leak only the heat."},
-               {"scale_fault",
-                "Compare the ratio of metered to expected heat in January and in July."}},
-          .parameters = parameters_of_steam_trap_leak,
-          .bind = bind_steam_trap_leak};
+  return {
+      .id = "steam_trap_leak",
+      .title = "Steam or heat leaks in the pipes",
+      .meaning =
+          "Heat is used day and night, even in summer, without heating any room: steam traps "
+          "stuck open, bare pipes or a leaking valve.",
+      .physics = "heat meter + L at all hours; L in kW as metered",
+      .on_meters =
+          "Heat is higher by the same amount at all hours, in summer too; no other meter changes.",
+      .check = "The steam traps, the bare pipes and the valves, on a summer night without use.",
+      .effect_class = EffectClass::plant,
+      .dating = Dating::may_begin,
+      .confusable =
+          {{"seasonal_hot_water",
+            "Close the hot-water loop's valve for a summer night and read the heat meter."},
+           {"simultaneous_heating_cooling",
+            "Chilled water on the same nights: reheat raises both, a leak only the heat."},
+           {"scale_fault",
+            "Compare the ratio of metered to expected heat in January and in July."}},
+      .parameters = parameters_of_steam_trap_leak,
+      .bind = bind_steam_trap_leak};
 }
 
 }  // namespace recald::diagnosis::effects

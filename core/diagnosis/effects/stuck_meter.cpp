@@ -56,6 +56,10 @@ Effect stuck_meter() {
           .physics =
               "y + s (l y(t1) - y) from t1 to t2; y recorded power in kW, s = 1 a dead "
               "meter, l = 0 zero, l = 1 the last value",
+          .on_meters =
+              "One meter repeats its last value, or zero, for a while; the other meters go on as "
+              "usual.",
+          .check = "The meter's pulse output, its line and its logger in that time.",
           .effect_class = EffectClass::meter,
           .dating = Dating::window,
           .of_one_meter = true,

@@ -58,6 +58,11 @@ Effect supply_reset_missing() {
       .physics =
           "θ_supply [°C] = θ_supply,model − min(k·max(θ_r − θ_e, 0), 5 K); extra cooling and "
           "reheat ≈ ρ c V_min·Δθ_supply [W]; k [K/K] ≥ 0, θ_r [°C]",
+      .on_meters =
+          "Heat and chilled water rise together in mild and cold weather, and not in hot weather.",
+      .check =
+          "The reset of the supply-air temperature in the controls, and the supply air over a "
+          "week.",
       .effect_class = EffectClass::air_system,
       .dating = Dating::may_begin,
       .needs = {.reheat_boxes = true},

@@ -34,20 +34,26 @@ std::unique_ptr<model::hourly::Alteration> bind_thermal_mass(const SiteFacts&,
 }  // namespace
 
 Effect thermal_mass() {
-  return {.id = "thermal_mass",
-          .title = "Building heavier or lighter than drawn",
-          .meaning =
-              "The building warms and cools more slowly (or faster) than its construction "
-              "suggests. Nothing is broken, but start times should take it into account.",
-          .physics = "heat capacity C_m x m; C_m in J/(m2 K) of floor area, m in -",
-          .effect_class = EffectClass::envelope,
-          .confusable = {{"early_start",
-                          "Fan status at dawn: an early start shows there, slow walls do not."},
-                         {"night_setback_missing",
-                          "Room temperature after a clear night: with a heavy mass it falls "
-                          "slowly, with a missing set-back it stays constant."}},
-          .parameters = parameters_of_thermal_mass,
-          .bind = bind_thermal_mass};
+  return {
+      .id = "thermal_mass",
+      .title = "Building heavier or lighter than drawn",
+      .meaning =
+          "The building warms and cools more slowly (or faster) than its construction "
+          "suggests. Nothing is broken, but start times should take it into account.",
+      .physics = "heat capacity C_m x m; C_m in J/(m2 K) of floor area, m in -",
+      .on_meters =
+          "Heat and cooling follow the outdoor temperature more slowly or faster; over a day they "
+          "stay nearly the same.",
+      .check =
+          "The construction against the drawings, and how room temperature falls over a weekend.",
+      .effect_class = EffectClass::envelope,
+      .confusable = {{"early_start",
+                      "Fan status at dawn: an early start shows there, slow walls do not."},
+                     {"night_setback_missing",
+                      "Room temperature after a clear night: with a heavy mass it falls "
+                      "slowly, with a missing set-back it stays constant."}},
+      .parameters = parameters_of_thermal_mass,
+      .bind = bind_thermal_mass};
 }
 
 }  // namespace recald::diagnosis::effects

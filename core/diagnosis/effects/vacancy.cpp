@@ -45,6 +45,10 @@ Effect vacancy() {
       .physics =
           "from t_1 to t_2: people [–] ×(1−a), lights and plugs above their least of the "
           "month [W] ×(1−0.8a); a [–] 0…1",
+      .on_meters =
+          "Electricity in working hours is lower for some weeks or months, nights stay the same, "
+          "heat is higher in winter.",
+      .check = "Who moved out and in at those dates, by badges, lift rides or leases.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::window,
       .confusable = {{"equipment_step",

@@ -61,6 +61,9 @@ Effect weekend_operation() {
       .physics =
           "on(Sat, Sun) = max(on, φ_day·on_weekday); φ_Sat, φ_Sun [–] 0…1: share of the "
           "daytime rooms that is served at weekday hours",
+      .on_meters =
+          "All meters show weekday hours on Saturdays or Sundays; weekday nights stay the same.",
+      .check = "The weekend timetable and the overrides in the building controls.",
       .effect_class = EffectClass::schedule,
       .dating = Dating::may_begin,
       .confusable =

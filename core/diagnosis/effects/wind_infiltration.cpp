@@ -49,6 +49,8 @@ Effect wind_infiltration() {
               "On windy days much more outdoor air leaks in than the drawings suggest. Look for "
               "open louvres, worn door seals and broken window gaskets.",
           .physics = "infiltration x (1 + k v^n); v wind speed in m/s, k in 1/(m/s)^n, n in -",
+          .on_meters = "Heat rises on windy days in cold weather, by day and by night.",
+          .check = "Louvres, door seals and window gaskets on the windward side.",
           .effect_class = EffectClass::envelope,
           .dating = Dating::may_begin,
           .needs = {.wind = true},
