@@ -5,17 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/calibration/samplers.hpp"
-#include "core/text/nearest.hpp"
 #include "daemon/commands/command_docs.hpp"
+#include "daemon/commands/command_help.hpp"
+#include "daemon/commands/command_tree.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/site_schema.hpp"
+#include "daemon/commands/wrong_usage.hpp"
 #include "daemon/site/setup/starter_building.hpp"
 #include "daemon/version.hpp"
 
@@ -45,7 +48,7 @@ void add_model(CLI::App& command, std::optional<ModelKind>& kind, const std::str
   command
       .add_option_function<std::string>(
           "--model", [&kind](const std::string& name) { kind = find_model_kind(name); }, text)
-      ->check(CLI::IsMember(names));
+      ->check(one_of(names));
 }
 
 void add_sampling(CLI::App& command, SamplingArguments& arguments) {
@@ -54,7 +57,7 @@ void add_sampling(CLI::App& command, SamplingArguments& arguments) {
     samplers.emplace_back(sampler.name);
   }
   command.add_option("--sampler", arguments.sampler, "How to sample the posterior")
-      ->check(CLI::IsMember(samplers))
+      ->check(one_of(samplers))
       ->capture_default_str();
   command
       .add_option("--hyper-prior", arguments.hyper_prior,
@@ -87,7 +90,7 @@ void add_calibration(CLI::App& command, CalibrateArguments& arguments) {
   command
       .add_option("--discrepancy", arguments.discrepancy,
                   "sound: with the model's own errors; seed: only the discrepancy of the paper")
-      ->check(CLI::IsMember({"sound", "seed"}))
+      ->check(one_of({"sound", "seed"}))
       ->capture_default_str();
   add_sampling(command, arguments);
 }
@@ -105,11 +108,11 @@ void add_form(CLI::App& command, DesignArguments& arguments) {
           "--form", arguments.form,
           "One regression for all months (seed) or Gaussian processes of the design's (monthly); "
           "the better one by default")
-      ->check(CLI::IsMember({"seed", "monthly"}));
+      ->check(one_of({"seed", "monthly"}));
   command
       .add_option("--wind-direction", arguments.wind_direction,
                   "How the seed form uses the wind direction")
-      ->check(CLI::IsMember({"sincos", "degrees"}))
+      ->check(one_of({"sincos", "degrees"}))
       ->capture_default_str();
 }
 
@@ -140,6 +143,7 @@ void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
                 "Also write predictive draws and log-likelihoods of the measured months (y_rep and "
                 "log_lik, for ArviZ)")
       ->needs(out);
+  show_first(command, {"--model", "--doe", "--out", "--seed", "--json"});
 }
 
 void add_screen(CLI::App& command, ScreenArguments& arguments) {
@@ -170,6 +174,7 @@ void add_doe(CLI::App& command, DoeArguments& arguments) {
       .add_flag("--corners", arguments.at_corners,
                 "Run random corners of the priors, where a meta-model is least sure")
       ->excludes(priors);
+  show_first(command, {"--model", "--runs", "--out", "--seed", "--json"});
 }
 
 /// What CLI11 cannot say of two options at once; empty where all is well.
@@ -202,7 +207,7 @@ void add_decode(CLI::App& command, DecodeArguments& arguments) {
   command.add_option("--request", arguments.request, "The request that it answers");
   command.add_option("--at", arguments.at, "Address of its first register on the wire, base 0");
   command.add_option("--as", arguments.as, "What --hex is, if recald guesses wrong")
-      ->check(CLI::IsMember({"tcp", "rtu", "registers"}));
+      ->check(one_of({"tcp", "rtu", "registers"}));
   command.add_flag("--json", arguments.json, "Print the result as one JSON object");
 }
 
@@ -243,7 +248,7 @@ void add_import(CLI::App& command, ImportArguments& arguments) {
   command
       .add_option("--stamps", arguments.stamps,
                   "Whether a time stamp marks the start or the end of its interval")
-      ->check(CLI::IsMember({"start", "end"}))
+      ->check(one_of({"start", "end"}))
       ->capture_default_str();
   command.add_flag("--supersede", arguments.supersede, "Replace good readings too");
   command.add_flag("--dry-run", arguments.dry_run, "Say what would happen, but change nothing");
@@ -319,7 +324,7 @@ void add_init(CLI::App& command, InitArguments& arguments) {
   for (const std::string_view use : starter_uses()) uses.emplace_back(use);
   CLI::Option* use =
       command.add_option("--use", starter.use, "Add a starter model of a typical building")
-          ->check(CLI::IsMember(uses))
+          ->check(one_of(uses))
           ->needs(epw);
   CLI::Option* area =
       command.add_option("--area", starter.floor_area_m2, "Floor area of all storeys, m2");
@@ -330,6 +335,7 @@ void add_init(CLI::App& command, InitArguments& arguments) {
   command.add_flag("--yes", arguments.asks_nothing,
                    "Accepted for scripts; recald init asks nothing");
   command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+  show_first(command, {"--out", "--timezone", "--epw", "--use", "--area"});
 }
 
 void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
@@ -455,6 +461,7 @@ void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& v
   report->add_option("site", given.report.site, "Site file (TOML)")->required();
   add_calibration(*report, given.report);
   report->add_option("--out", given.report.out, "Page to write, such as report.html")->required();
+  show_first(*report, {"--out", "--seed", "--threads", "--json"});
   verbs.push_back(
       {report, [&](const Console& console) { return run_report(given.report, console); }});
 }
@@ -480,6 +487,7 @@ void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs)
   metamodel
       ->add_option("--parameters", given.metamodel.parameters, "all, or names separated by commas")
       ->capture_default_str();
+  show_first(*metamodel, {"--doe", "--check", "--parameters", "--out", "--json"});
   verbs.push_back(
       {metamodel, [&](const Console& console) { return run_metamodel(given.metamodel, console); }});
 }
@@ -506,6 +514,7 @@ void add_drift_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   drift->add_option("--seed", given.drift.seed, "Seed of all random numbers")
       ->capture_default_str();
   drift->add_option("--threads", given.drift.threads, "Number of threads; 0 for one per core");
+  show_first(*drift, {"--model", "--learn", "--out", "--seed", "--json"});
   verbs.push_back({drift, [&](const Console& console) { return run_drift(given.drift, console); }});
 }
 
@@ -525,6 +534,7 @@ void add_ecm_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   add_model(*ecm, given.ecm.model, "epc, hourly or energyplus; else as the site file says", false);
   ecm->add_option("--seed", given.ecm.seed, "Seed of all random numbers")->capture_default_str();
   ecm->add_option("--threads", given.ecm.threads, "Number of threads; 0 for one per core");
+  show_first(*ecm, {"--measure", "--since", "--model", "--out", "--json"});
   verbs.push_back({ecm, [&](const Console& console) { return run_ecm(given.ecm, console); }});
 }
 
@@ -673,7 +683,7 @@ void add_shell_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
          const auto is_it = [&](const CLI::App* one) { return one->get_name() == given.command; };
          const auto found = std::as_const(app).get_subcommands(is_it);
          if (!given.command.empty() && found.empty()) {
-           return console.misused(fmt::format("there is no command '{}'", given.command));
+           return console.misused(unknown_word(app, std::vector{given.command}));
          }
          console.out << man_page(found.empty() ? app : *found.front(), kVersion);
          return kSuccess;
@@ -692,44 +702,45 @@ void add_shell_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
           ->group(kShell);
   completion->add_option("shell", given.shell, "bash, zsh or fish")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+      ->check(one_of({"bash", "zsh", "fish"}));
   verbs.push_back({completion, [&](const Console& console) {
                      console.out << completion_script(app, given.shell);
                      return kSuccess;
                    }});
 }
 
-/// What is wrong with the first word of a command line, if it is no command; else empty. CLI11
-/// would answer `--help` before it looks at it.
-std::string unknown_command(const CLI::App& app, std::span<const char* const> words) {
-  if (words.empty() || std::string_view{words.front()}.starts_with('-')) return {};
-  const std::string_view word{words.front()};
-  std::vector<std::string_view> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_name() == word) return unknown_command(*command, words.subspan(1));
-    names.push_back(command->get_name());
-  }
-  if (names.empty()) return {};  // a file's name, or whatever the command takes
-  const std::string_view nearest = nearest_name(word, names);
-  const std::string above = app.get_parent() == nullptr ? "" : app.get_name() + " ";
-  return fmt::format("there is no command '{}{}'; {}", above, word,
-                     nearest.empty() ? fmt::format("see recald {}--help", above)
-                                     : fmt::format("did you mean '{}'?", nearest));
-}
-
-}  // namespace
-
-int run_cli(int argc, const char* const* argv, const Console& console) {
+/// The whole command line; options point into it, so it stays where it is.
+struct CommandLine {
   CLI::App app{"Keeps a building's energy model calibrated to its meters.", "recald"};
-  app.set_version_flag("-V,--version", kVersion);
-  app.require_subcommand(1);
-  app.fallthrough();  // recald check site.toml -q
   bool quiet = false;
   bool verbose = false;
-  CLI::Option* less = app.add_flag("-q,--quiet", quiet, "Print results and failures only");
-  app.add_flag("-v,--verbose", verbose, "Print every rejected row; log more")->excludes(less);
   Arguments given;
   std::vector<Verb> verbs;
+
+  CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+};
+
+/// Where --help shows all there is, --help-all is not worth a line; whoever writes it gets the
+/// same.
+void hide_idle_help(CLI::App& command) {
+  const auto is_more = [](const CLI::Option* one) { return one->get_group() == kMoreOptions; };
+  if (std::ranges::none_of(options_of(command, false), is_more)) {
+    command.get_option("--help-all")->group("");
+  }
+  for (CLI::App* below : command.get_subcommands({})) hide_idle_help(*below);
+}
+
+CommandLine::CommandLine() {
+  app.formatter(std::make_shared<CommandHelp>());
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.set_help_all_flag("--help-all", "Print the help of every command and exit");
+  app.set_version_flag("-V,--version", kVersion, "Print the version and exit");
+  app.require_subcommand(1);
+  app.fallthrough();  // recald check site.toml -q
+  CLI::Option* less = app.add_flag("-q,--quiet", quiet, "Print results and failures only");
+  app.add_flag("-v,--verbose", verbose, "Print every rejected row; log more")->excludes(less);
   add_site_verbs(app, given, verbs);
   add_store_verbs(app, given, verbs);
   add_device_verbs(app, given, verbs);
@@ -742,24 +753,57 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   add_worker_verb(app, given, verbs);
   add_fleet_verbs(app, given, verbs);
   add_shell_verbs(app, given, verbs);
-  const std::span words{argv, static_cast<std::size_t>(argc)};
-  if (const auto why = unknown_command(app, words.subspan(std::min<std::size_t>(1, words.size())));
-      !why.empty()) {
-    return console.misused(why);
-  }
+  for (CLI::App* command : app.get_subcommands({})) hide_idle_help(*command);
+  // Last, since commands inherit it.
+  app.footer(
+      "recald COMMAND --help explains a command.");
+}
+
+/// "recald calibrate has no option …" names the program itself.
+int tell_misuse(const std::string& sentence, const Console& console) {
+  if (!sentence.starts_with("recald ")) return console.misused(sentence);
+  console.err << sentence << "\n";
+  return kUsage;
+}
+
+}  // namespace
+
+std::string wrong_usage_of(const std::vector<std::string>& words) {
+  static const CommandLine kAll;
+  if (std::string why = unknown_word(kAll.app, words); !why.empty()) return why;
+  CommandLine line;
   try {
-    app.parse(argc, argv);
+    line.app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::ParseError& error) {
+    return error.get_exit_code() == 0 ? std::string{} : sentence_of(line.app, error);
+  }
+  return {};
+}
+
+int run_cli(int argc, const char* const* argv, const Console& console) {
+  CommandLine line;
+  if (argc < 2) {
+    console.out << line.app.help();
+    return kSuccess;
+  }
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (const auto why = unknown_word(line.app, words); !why.empty())
+    return tell_misuse(why, console);
+  try {
+    line.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // CLI11 prints help and version through the same door, with exit code 0.
-    return app.exit(error, console.out, console.err) == 0 ? kSuccess : kUsage;
+    if (error.get_exit_code() != 0) return tell_misuse(sentence_of(line.app, error), console);
+    line.app.exit(error, console.out, console.err);
+    return kSuccess;
   }
   const auto verb =
-      std::ranges::find_if(verbs, [](const Verb& one) { return one.command->parsed(); });
+      std::ranges::find_if(line.verbs, [](const Verb& one) { return one.command->parsed(); });
   const EndSignals signals;
-  const Console told{console.out, console.err, console.is_terminal && !quiet,
-                     quiet     ? Console::Detail::little
-                     : verbose ? Console::Detail::all
-                               : Console::Detail::usual};
+  const Console told{console.out, console.err, console.is_terminal && !line.quiet,
+                     line.quiet     ? Console::Detail::little
+                     : line.verbose ? Console::Detail::all
+                                    : Console::Detail::usual};
   return signals.exit_code(verb->run(told));  // CLI11 saw to it that there is one
 }
 

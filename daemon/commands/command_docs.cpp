@@ -6,32 +6,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "daemon/commands/command_tree.hpp"
+
 namespace recald::daemon {
 namespace {
-
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App*) { return true; });
-}
-
-std::vector<const CLI::Option*> options_of(const CLI::App& app, bool positional) {
-  return app.get_options(
-      [&](const CLI::Option* option) { return option->get_positional() == positional; });
-}
-
-/// "recald model list"
-std::string full_name(const CLI::App& command, char between) {
-  const CLI::App* parent = command.get_parent();
-  if (parent == nullptr) return command.get_name();
-  return full_name(*parent, between) + between + command.get_name();
-}
-
-/// --json, -V
-std::vector<std::string> flags_of(const CLI::Option& option) {
-  std::vector<std::string> flags;
-  for (const std::string& name : option.get_snames()) flags.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) flags.push_back("--" + name);
-  return flags;
-}
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
@@ -137,7 +115,7 @@ void for_each_command(const CLI::App& app, const std::string& path, const Visit&
   }
 }
 
-std::vector<std::string> flags_of(const CLI::App& command) {
+std::vector<std::string> all_flags_of(const CLI::App& command) {
   std::vector<std::string> all;
   for (const CLI::Option* option : options_of(command, false)) {
     const auto flags = flags_of(*option);
@@ -156,7 +134,7 @@ std::string bash_script(const CLI::App& app) {
     std::vector<std::string> below;
     for (const CLI::App* one : commands_of(command)) below.push_back(one->get_name());
     lists += fmt::format("    \"{}\") commands=\"{}\" flags=\"{}\" ;;\n", path,
-                         fmt::join(below, " "), fmt::join(flags_of(command), " "));
+                         fmt::join(below, " "), fmt::join(all_flags_of(command), " "));
     for (const CLI::Option* option : options_of(command, false)) {
       const auto words = words_of(*option);
       if (words.empty()) continue;

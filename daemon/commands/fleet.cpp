@@ -12,6 +12,8 @@
 #include "adapters/record/schema.hpp"
 #include "adapters/record/sites.hpp"
 #include "adapters/results/learned_priors.hpp"
+#include "core/text/nearest.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/fleet/config/fleet_config.hpp"
@@ -56,6 +58,15 @@ std::string or_dash(const std::optional<metering::Instant>& time) {
 
 Json time_json(const std::optional<metering::Instant>& time) {
   return time ? Json(metering::to_string(*time)) : Json(nullptr);
+}
+
+std::string no_such_site(const std::string& id, const std::vector<record::RecordedSite>& sites) {
+  std::vector<std::string_view> ids;
+  for (const record::RecordedSite& one : sites) ids.push_back(one.site.id);
+  const std::string_view nearest = nearest_name(id, ids);
+  return fmt::format("the fleet has no site '{}'; {}", printable(id),
+                     nearest.empty() ? "recald fleet status lists its sites"
+                                     : fmt::format("did you mean '{}'?", nearest));
 }
 
 std::string job_line(const record::FleetJob& job) {
@@ -181,7 +192,7 @@ int run_fleet_priors(const FleetPriorsArguments& arguments, const Console& conso
   std::map<std::string, std::string> use_of;
   for (const record::RecordedSite& one : *sites) use_of[one.site.id] = one.site.use;
   if (!use_of.contains(arguments.site)) {
-    return console.fail(fmt::format("the fleet has no site '{}'", arguments.site));
+    return console.fail(no_such_site(arguments.site, *sites));
   }
   const auto results = record::newest_results(**record, JobKind::calibration);
   if (!results) return console.fail(results.error());
@@ -235,7 +246,7 @@ int run_fleet_rerun(const FleetRerunArguments& arguments, const Console& console
   for (const std::string& id : arguments.sites) {
     const auto is_it = [&](const record::RecordedSite& one) { return one.site.id == id; };
     if (std::ranges::none_of(*known, is_it)) {
-      return console.fail(fmt::format("the fleet has no site '{}'", id));
+      return console.fail(no_such_site(id, *known));
     }
   }
   const auto jobs = record::would_rerun(**record, what);

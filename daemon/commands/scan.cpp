@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/text/nearest.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/scan_bus.hpp"
@@ -97,12 +98,15 @@ BusScan scan_aloud(const BusConfig& bus, const UnitRange& units, const Console& 
 }
 
 std::string no_such_bus(const SiteConfig& site, const std::string& name) {
-  std::vector<std::string> names;
+  std::vector<std::string_view> names;
   for (const BusConfig& bus : site.buses) names.push_back(bus.name);
-  return fmt::format(
-      "{}: there is no [bus.{}]; the buses of the site are {}", site.file.filename().string(),
-      printable(name),
-      names.empty() ? std::string{"none"} : fmt::format("{}", fmt::join(names, ", ")));
+  const std::string_view nearest = nearest_name(name, names);
+  const std::string meant =
+      !nearest.empty() ? fmt::format("did you mean '{}'?", nearest)
+      : names.empty()  ? std::string{"the site has no bus"}
+                       : fmt::format("the buses of the site are {}", fmt::join(names, ", "));
+  return fmt::format("{}: there is no [bus.{}]; {}", site.file.filename().string(), printable(name),
+                     meant);
 }
 
 }  // namespace

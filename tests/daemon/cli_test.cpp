@@ -78,7 +78,7 @@ class Cli : public ::testing::Test {
 
 TEST_F(Cli, WrongUsageIsTwo) {
   const std::vector<std::vector<std::string>> misuses = {
-      {},
+      {"-q"},
       {"frobnicate"},
       {"--frobnicate"},
       {"replay"},
@@ -119,7 +119,6 @@ TEST_F(Cli, HelpAndVersionAreSuccess) {
     EXPECT_THAT(help.out, HasSubstr(command));
   }
   EXPECT_THAT(help.err, IsEmpty());
-  EXPECT_THAT(run({"calibrate", "--help"}).out, HasSubstr("--burn-in"));
   const Outcome version = run({"--version"});
   EXPECT_EQ(version.exit_code, kSuccess);
   EXPECT_EQ(version.out, std::string{kVersion} + "\n");

@@ -6,6 +6,7 @@
 
 #include "adapters/stores/open.hpp"
 #include "adapters/system/regular_file.hpp"
+#include "core/text/nearest.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
 
 namespace recald::daemon {
@@ -27,6 +28,16 @@ Result<void> require_meters(const SiteConfig& site, const StoreSummary& backup) 
                   backup.meters.front(), backup.meters.size() - 1, site.file.filename().string()));
 }
 
+/// "; did you mean 'site-2024-03-02.db'?"
+std::string nearest_backup(const StoreConfig& store, const std::filesystem::path& named) {
+  std::vector<std::string> files;
+  for (const auto& one : backups_of(store)) files.push_back(one.filename().string());
+  const std::vector<std::string_view> names(files.begin(), files.end());
+  const std::string wanted = named.filename().string();
+  const std::string_view nearest = nearest_name(wanted, names);
+  return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+}
+
 }  // namespace
 
 Result<std::filesystem::path> chosen_backup(const StoreConfig& store,
@@ -37,10 +48,11 @@ Result<std::filesystem::path> chosen_backup(const StoreConfig& store,
                               !std::filesystem::exists(named, ignored) &&
                               std::filesystem::exists(store.backup_folder / named, ignored);
     const auto file = is_in_folder ? store.backup_folder / named : named;
-    if (auto is_file = system::require_file(file, "the backup"); !is_file) {
-      return tl::unexpected(is_file.error());
-    }
-    return file;
+    auto is_file = system::require_file(file, "the backup");
+    if (is_file) return file;
+    Error why = is_file.error();
+    if (why.code == ErrorCode::not_found) why.message += nearest_backup(store, named);
+    return tl::unexpected(std::move(why));
   }
   const auto backups = backups_of(store);
   if (!backups.empty()) return backups.front();

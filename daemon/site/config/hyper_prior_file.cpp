@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 
 #include "adapters/system/regular_file.hpp"
+#include "core/text/nearest.hpp"
+#include "core/text/printable.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -67,6 +70,12 @@ tl::expected<std::variant<calibration::HyperPriorProfile, HyperPrior>, Problems>
   }
   const auto profile = calibration::parse_hyper_prior_profile(text);
   if (profile) return Choice{*profile};
+  constexpr std::array<std::string_view, 5> kProfiles{"scaled", "seed", "stan2018", "wide",
+                                                      "tight"};
+  if (const std::string_view nearest = nearest_name(text, kProfiles); !nearest.empty()) {
+    return tl::unexpected(Problems{fmt::format(
+        "'{}' is not a hyper-prior profile; did you mean '{}'?", printable(text), nearest)});
+  }
   return tl::unexpected(Problems{profile.error().message + ", or name a file that ends in .toml"});
 }
 
