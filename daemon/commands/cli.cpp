@@ -289,6 +289,7 @@ struct Arguments {
   DoeArguments doe;
   EngineArguments engine;
   DiagnoseArguments diagnose;
+  EffectsArguments effects;
   DriftArguments drift;
   EcmArguments ecm;
   DetectabilityArguments detectability;
@@ -551,6 +552,14 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
                        "Add only this effect, EFFECT or EFFECT:METER, which is known to be there");
   verbs.push_back(
       {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
+
+  CLI::App* effects =
+      app.add_subcommand("effects", "List the effects that diagnose knows, or explain one")
+          ->group(kFind);
+  effects->add_option("name", given.effects.name, "Effect to explain; without one, all are listed");
+  effects->add_flag("--json", given.effects.json, "Print the result as one JSON object");
+  verbs.push_back(
+      {effects, [&](const Console& console) { return run_effects(given.effects, console); }});
 
   CLI::App* detectability =
       app.add_subcommand("detectability", "Estimate how visible an effect would be at a site")

@@ -100,6 +100,11 @@ struct DiagnoseArguments : SiteArguments {
   std::vector<std::string> assumed;  ///< Effects known to be there, "scale_fault:steam".
 };
 
+struct EffectsArguments {
+  std::string name;  ///< Id of one, as a person writes it; empty: all.
+  bool json = false;
+};
+
 struct DriftArguments : SiteArguments {
   std::filesystem::path out;       ///< Folder for drift.json, or empty.
   std::optional<ModelKind> model;  ///< Absent: as the site file says.
@@ -216,6 +221,10 @@ struct FleetRerunArguments : FleetArguments {
   bool yes = false;                ///< Otherwise it only lists them.
 };
 
+/// Lists the effects that a diagnosis knows, or explains one.
+int run_effects(const EffectsArguments& arguments, const Console& console);
+/// "there is no effect 'fooling'; did you mean 'fouling'?"
+[[nodiscard]] std::string no_such_effect(std::string_view name);
 /// Looks at exports of meters and writes a site file that reads them, each guess a comment.
 int run_init(const InitArguments& arguments, const Console& console);
 /// Explains a site file; with `meters` it also reads each live meter once.

@@ -7,7 +7,10 @@
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/system/write_file.hpp"
+#include "core/diagnosis/effect.hpp"
 #include "core/display/warning.hpp"
+#include "core/text/nearest.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/engine_runs.hpp"
 #include "daemon/commands/generated_at.hpp"
@@ -93,12 +96,44 @@ std::string fate_words(const diagnosis::Diagnosis& diagnosis, const DiagnoseArgu
                      diagnosis.added.size() == 1 ? "this effect" : "these effects");
 }
 
+/// Of EFFECT:METER; what is wrong with a name, found before the readings are.
+std::string wrong_assumption(const DiagnoseArguments& arguments) {
+  for (const std::string& assumed : arguments.assumed) {
+    const std::string effect = assumed.substr(0, assumed.find(':'));
+    if (diagnosis::find_effect(effect) == nullptr) return "--assume: " + no_such_effect(effect);
+  }
+  return {};
+}
+
+/// The same of its meter, which the site has to have.
+std::string wrong_meter(const DiagnoseArguments& arguments, const SiteConfig& site) {
+  for (const std::string& assumed : arguments.assumed) {
+    const auto colon = assumed.find(':');
+    if (colon == std::string::npos) continue;
+    const std::string meter = assumed.substr(colon + 1);
+    if (site.meter_index(meter)) continue;
+    std::vector<std::string_view> ids;
+    for (const MeterConfig& one : site.meters) ids.push_back(one.meter.id);
+    const std::string_view nearest = nearest_name(meter, ids);
+    return fmt::format(
+        "--assume: there is no meter '{}'; {}", printable(meter),
+        nearest.empty() ? "see recald check" : fmt::format("did you mean '{}'?", nearest));
+  }
+  return {};
+}
+
 }  // namespace
 
 int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
+  if (const std::string why = wrong_assumption(arguments); !why.empty()) {
+    return console.misused(why);
+  }
   auto modelled = open_modelled_site(arguments.site, console, ModelKind::hourly);
   if (!modelled) return modelled.error();
+  if (const std::string why = wrong_meter(arguments, modelled->site.config); !why.empty()) {
+    return console.misused(why);
+  }
   const auto problem = prepare_diagnosis(*modelled);
   if (!problem) return console.fail(problem.error());
   if (!arguments.out.empty()) {

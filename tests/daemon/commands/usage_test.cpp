@@ -138,6 +138,8 @@ TEST(WrongUsage, IsOneSentenceAndTheCodeTwo) {
       {{"completion", "bsh"}, "recald: shell: there is no 'bsh'; did you mean 'bash'?"},
       {{"calibrate", "s", "--hyper-prior", "scald"},
        "recald: 'scald' is not a hyper-prior profile; did you mean 'scaled'?"},
+      {{"diagnose", "s", "--assume", "fowling"},
+       "recald: --assume: there is no effect 'fowling'; did you mean 'fouling'?"},
       {{"calibrate", "s", "--draws", "10"},
        "recald: --draws: '10' is not a number from 100 to 100000000"},
       {{"calibrate", "s", "--seed", "many"},
