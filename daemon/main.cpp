@@ -9,7 +9,10 @@
 int main(int argc, char** argv) {
   // Whoever reads the output may end before it does (| head): the results are written all the same.
   std::signal(SIGPIPE, SIG_IGN);
-  const recald::daemon::Console console{std::cout, std::cerr, ::isatty(STDERR_FILENO) == 1};
+  const bool is_somebody_there = ::isatty(STDIN_FILENO) == 1 && ::isatty(STDOUT_FILENO) == 1;
+  const recald::daemon::Console console{std::cout, std::cerr, ::isatty(STDERR_FILENO) == 1,
+                                        recald::daemon::Console::Detail::usual,
+                                        is_somebody_there ? &std::cin : nullptr};
   try {
     return recald::daemon::run_cli(argc, argv, console);
   } catch (const std::exception& error) {

@@ -5,16 +5,14 @@
 #include <vector>
 
 #include "adapters/system/write_file.hpp"
+#include "daemon/commands/calibrate_aloud.hpp"
 #include "daemon/commands/calibration_options.hpp"
-#include "daemon/commands/commands.hpp"
 #include "daemon/commands/engine_runs.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/open_site.hpp"
-#include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/calibration_folder.hpp"
 #include "daemon/site/results/comparison.hpp"
-#include "daemon/site/results/meters_report.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -43,7 +41,8 @@ tl::expected<ModelledSite, int> open_with_runs(const CalibrateArguments& argumen
                    arguments.seed, arguments.threads, console);
 }
 
-/// From the site file to the calibration; failures are printed and come back as an exit code.
+}  // namespace
+
 tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments& arguments,
                                                        const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
@@ -65,24 +64,6 @@ tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments&
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return std::move(*done);
 }
-
-/// A site without a model and without weather: what its meters tell by themselves.
-int report_meters(const OpenSite& site, const CalibrateArguments& arguments,
-                  const Console& console) {
-  VirtualClock clock{metering::Instant{}};
-  const auto recording = record_site(site, {}, clock, {});
-  if (!recording) return console.fail(recording.error());
-  print_data_words(*recording, console);
-  const auto page = render_meters_of(site, *recording, generated_at());
-  if (!page) return console.fail(page.error());
-  if (auto written = system::write_file(arguments.out, *page); !written) {
-    return console.fail(written.error());
-  }
-  if (!arguments.json) console.out << arguments.out.string() << "\n";
-  return kSuccess;
-}
-
-}  // namespace
 
 namespace {
 
@@ -153,23 +134,6 @@ int run_calibrate(const CalibrateArguments& arguments, const Console& console) {
       [&](const std::filesystem::path& folder) { return write_models(models, json, folder); });
   if (models.size() > 1 && !arguments.json) console.out << comparison_words(models);
   return code;
-}
-
-int run_report(const CalibrateArguments& arguments, const Console& console) {
-  if (auto site = open_site(arguments.site); site && !site->config.model && !site->config.weather) {
-    return report_meters(*site, arguments, console);
-  }
-  const auto done = calibrate_aloud(arguments, console);
-  if (!done) return done.error();
-  if (auto written = system::write_file(arguments.out, render(*done, generated_at())); !written) {
-    return console.fail(written.error());
-  }
-  if (arguments.json) {
-    console.out << calibration_json(done->calibration, done->modelled.facts);
-  } else {
-    console.out << arguments.out.string() << "\n";
-  }
-  return kSuccess;
 }
 
 }  // namespace recald::daemon

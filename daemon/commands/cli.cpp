@@ -146,6 +146,20 @@ void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
   show_first(command, {"--model", "--doe", "--out", "--seed", "--json"});
 }
 
+void add_report(CLI::App& command, ReportArguments& arguments) {
+  command
+      .add_option("files", arguments.files,
+                  "Site file (TOML), or exports of meters: CSV and its kin, .xlsx, Green Button")
+      ->required();
+  add_calibration(command, arguments);
+  arguments.out = "report.html";
+  command.add_option("--out", arguments.out, "Page to write")->capture_default_str();
+  command.add_option("--timezone", arguments.timezone,
+                     "The building's zone, such as Europe/Berlin, for exports whose stamps have no "
+                     "offset");
+  show_first(command, {"--timezone", "--out", "--seed", "--threads", "--json"});
+}
+
 void add_screen(CLI::App& command, ScreenArguments& arguments) {
   command.add_option("--doe", arguments.design.folder, "Design folder")->required();
   add_design(command, arguments.design);
@@ -283,7 +297,7 @@ struct Arguments {
   ImportArguments imported;
   RestoreArguments restore;
   CalibrateArguments calibrate;
-  CalibrateArguments report;
+  ReportArguments report;
   ScreenArguments screen;
   MetamodelArguments metamodel;
   DoeArguments doe;
@@ -455,14 +469,11 @@ void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& v
                    }});
 
   CLI::App* report =
-      app.add_subcommand(
-             "report",
-             "Write the page of a site: of its meters, and of a calibration where it has a model")
+      app.add_subcommand("report",
+                         "Write the page of a site or of exports: meters, and a calibration where "
+                         "there is a model")
           ->group(kCalibrate);
-  report->add_option("site", given.report.site, "Site file (TOML)")->required();
-  add_calibration(*report, given.report);
-  report->add_option("--out", given.report.out, "Page to write, such as report.html")->required();
-  show_first(*report, {"--out", "--seed", "--threads", "--json"});
+  add_report(*report, given.report);
   verbs.push_back(
       {report, [&](const Console& console) { return run_report(given.report, console); }});
 }
@@ -765,7 +776,8 @@ CommandLine::CommandLine() {
   for (CLI::App* command : app.get_subcommands({})) hide_idle_help(*command);
   // Last, since commands inherit it.
   app.footer(
-      "recald COMMAND --help explains a command.");
+      "recald COMMAND --help explains a command.\n"
+      "A first page from an export of meters: recald report export.csv");
 }
 
 /// "recald calibrate has no option …" names the program itself.
@@ -812,7 +824,8 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   const Console told{console.out, console.err, console.is_terminal && !line.quiet,
                      line.quiet     ? Console::Detail::little
                      : line.verbose ? Console::Detail::all
-                                    : Console::Detail::usual};
+                                    : Console::Detail::usual,
+                     console.answers};
   return signals.exit_code(verb->run(told));  // CLI11 saw to it that there is one
 }
 

@@ -69,6 +69,12 @@ struct CalibrateArguments : SiteArguments, SamplingArguments {
   std::string parameters;              ///< "screened", "all" or names; empty: screened.
 };
 
+/// One site file, or exports of meters.
+struct ReportArguments : CalibrateArguments {
+  std::vector<std::filesystem::path> files;
+  std::string timezone;  ///< Of exports: IANA name, or empty.
+};
+
 struct ScreenArguments {
   DesignArguments design;
   std::filesystem::path out;  ///< Folder for screen.json, or empty.
@@ -254,8 +260,8 @@ int run_profile(const ProfileArguments& arguments, const Console& console);
 int run_calibrate(const CalibrateArguments& arguments, const Console& console);
 /// The same from a design of experiments, with screen.json and metamodel.json for profile.json.
 int run_calibrate_design(const CalibrateArguments& arguments, const Console& console);
-/// The site's calibration, of which only the page is kept.
-int run_report(const CalibrateArguments& arguments, const Console& console);
+/// The site's calibration, of which only the page is kept; or the page of the meters in exports.
+int run_report(const ReportArguments& arguments, const Console& console);
 int run_screen(const ScreenArguments& arguments, const Console& console);
 int run_metamodel(const MetamodelArguments& arguments, const Console& console);
 /// What the site's EnergyPlus model reports, and what in it could be varied.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <istream>
 #include <mutex>
 #include <ostream>
 #include <string>
@@ -24,6 +25,7 @@ struct Console {
   std::ostream& err;  ///< Words.
   bool is_terminal;   ///< Of `err`: progress is drawn only for people.
   Detail detail = Detail::usual;
+  std::istream* answers = nullptr;  ///< Of a person who can be asked; null: nobody is there.
 
   /// "recald: …" on err; returns kFailure.
   int fail(const std::string& sentence) const;

@@ -91,7 +91,9 @@ TEST_F(Cli, WrongUsageIsTwo) {
       {"calibrate", site(), "--draws", "many"},
       {"calibrate", site(), "--draws", "10"},
       {"calibrate", site(), "--chains", "1"},
-      {"report", site()},
+      {"report"},
+      {"report", site(), "--timezone", "Europe/Zurich"},
+      {"report", site(), path("readings.csv")},
   };
   for (const auto& arguments : misuses) {
     const Outcome outcome = run(arguments);

@@ -153,6 +153,7 @@ struct ModelConfig {
 
 struct SiteConfig {
   std::filesystem::path file;
+  std::string unwritten;  ///< What `file` would have in it; empty: it is there.
   std::string id;
   std::string name;
   std::string timezone;

@@ -11,8 +11,13 @@ namespace recald::daemon {
 Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest) {
   system::Sha256 site_digest;
   system::Sha256 data_digest;
-  if (auto added = site_digest.add_file(site.file); !added) return tl::unexpected(added.error());
-  if (auto added = data_digest.add_file(site.file); !added) return tl::unexpected(added.error());
+  for (system::Sha256* digest : {&site_digest, &data_digest}) {
+    if (!site.unwritten.empty()) {
+      digest->add(site.unwritten);
+    } else if (auto added = digest->add_file(site.file); !added) {
+      return tl::unexpected(added.error());
+    }
+  }
   std::set<std::filesystem::path> files;
   for (const MeterConfig& meter : site.meters) {
     files.insert(meter.files.begin(), meter.files.end());

@@ -517,15 +517,17 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file) {
   return survey;
 }
 
+bool is_without_zone(const SurveyedExport& survey) {
+  return survey.table && !survey.table->has_offsets && survey.table->shape.timezone.empty();
+}
+
 }  // namespace
 
 Result<SurveyedExport> survey_export(const std::filesystem::path& file,
                                      const std::optional<metering::LocalCalendar>& calendar) {
   auto survey = described_export(file);
   if (!survey) return survey;
-  const bool is_naive =
-      survey->table && !survey->table->has_offsets && survey->table->shape.timezone.empty();
-  if (is_naive && !calendar) {
+  if (is_without_zone(*survey) && !calendar) {
     return failure(ErrorCode::invalid_value,
                    fmt::format("'{}': its times do not say their offset from UTC; run again with "
                                "--timezone and the building's zone, such as --timezone "
@@ -558,6 +560,10 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
                                         whole->report.lines, first_issue(whole->report.issues)));
   }
   return survey;
+}
+
+Result<bool> needs_timezone(const std::filesystem::path& file) {
+  return described_export(file).map(is_without_zone);
 }
 
 }  // namespace recald::daemon

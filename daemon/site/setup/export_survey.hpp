@@ -59,4 +59,8 @@ struct SurveyedExport {
 [[nodiscard]] Result<SurveyedExport> survey_export(
     const std::filesystem::path& file, const std::optional<metering::LocalCalendar>& calendar);
 
+/// Whether its stamps say neither their offset from UTC nor their zone. Reads the first rows, of a
+/// table with a column of meters all.
+[[nodiscard]] Result<bool> needs_timezone(const std::filesystem::path& file);
+
 }  // namespace recald::daemon

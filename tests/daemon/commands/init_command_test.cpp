@@ -594,8 +594,7 @@ TEST_F(Init, AFileNamedTwiceIsRefused) {
 
 TEST_F(Init, AnExportInThePlaceOfASiteFileLeadsToInit) {
   write_text(path("main.csv"), "Time,kWh\n" + hours_of_june(plain_value));
-  const Outcome outcome =
-      run({"report", path("main.csv").string(), "--out", path("page.html").string()});
+  const Outcome outcome = run({"check", path("main.csv").string()});
   EXPECT_EQ(outcome.exit_code, kFailure);
   EXPECT_THAT(outcome.err, HasSubstr("is an export, not a site file; `recald init` makes"));
 }

@@ -176,7 +176,7 @@ TEST(Help, IsWhatOneGetsWithoutACommand) {
   EXPECT_EQ(outcome.exit_code, kSuccess);
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_EQ(outcome.out, run({"--help"}).out);
-  EXPECT_THAT(outcome.out, HasSubstr("Set up a site:"));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("Set up a site:"), HasSubstr("recald report export")));
 }
 
 std::ptrdiff_t options_in(const std::string& help) {
