@@ -315,7 +315,7 @@ struct Arguments {
   FleetAddArguments fleet_sites;
   FleetRerunArguments rerun;
   FleetPriorsArguments fleet_priors;
-  std::string command;
+  std::vector<std::string> command;
   std::string shell;
 };
 
@@ -698,16 +698,20 @@ void add_shell_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   CLI::App* man =
       app.add_subcommand("man", "Print a manual page, to be read with man -l -")->group(kShell);
   man->add_option("command", given.command, "Command; the page of recald itself by default");
-  verbs.push_back(
-      {man, [&](const Console& console) {
-         const auto is_it = [&](const CLI::App* one) { return one->get_name() == given.command; };
-         const auto found = std::as_const(app).get_subcommands(is_it);
-         if (!given.command.empty() && found.empty()) {
-           return console.misused(unknown_word(app, std::vector{given.command}));
-         }
-         console.out << man_page(found.empty() ? app : *found.front(), kVersion);
-         return kSuccess;
-       }});
+  verbs.push_back({man, [&](const Console& console) {
+                     std::vector<std::string> words;
+                     for (const std::string& word : given.command) {
+                       // recald-model-list is how the page is called
+                       for (std::string& part : CLI::detail::split(word, '-')) {
+                         if (!words.empty() || part != "recald") words.push_back(std::move(part));
+                       }
+                     }
+                     if (const auto why = unknown_word(app, words); !why.empty()) {
+                       return console.misused(why);
+                     }
+                     console.out << man_page(command_at(app, words), kVersion);
+                     return kSuccess;
+                   }});
 
   CLI::App* schema =
       app.add_subcommand("schema", "Print a JSON schema of the site file, for editors")
@@ -776,7 +780,7 @@ CommandLine::CommandLine() {
   for (CLI::App* command : app.get_subcommands({})) hide_idle_help(*command);
   // Last, since commands inherit it.
   app.footer(
-      "recald COMMAND --help explains a command.\n"
+      "recald COMMAND --help explains a command, recald man COMMAND has examples.\n"
       "A first page from an export of meters: recald report export.csv");
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "daemon/commands/command_pages.hpp"
 #include "daemon/commands/command_tree.hpp"
 
 namespace recald::daemon {
@@ -242,13 +243,64 @@ std::string fish_script(const CLI::App& app) {
   return script;
 }
 
+/// Its words without the program's: "model list", as pages are found by.
+std::string page_name(const CLI::App& command) {
+  return command.get_parent() == nullptr ? std::string{}
+                                         : full_name(command).substr(std::string{"recald "}.size());
+}
+
+void add_page(const CommandPage& own, std::string& page) {
+  page += ".SH EXAMPLES\n";
+  for (const CommandExample& example : own.examples) {
+    page +=
+        fmt::format(".TP\n{}\n.nf\n\\fB{}\\fR\n.fi\n", troff(example.what), troff(example.line));
+  }
+  page += ".SH FILES\n";
+  if (own.files.empty()) page += "None but what the options name.\n";
+  for (const CommandFile& file : own.files) {
+    page += fmt::format(".TP\n\\fI{}\\fR\n{}.\n", troff(file.name), troff(file.what));
+  }
+}
+
+/// Commands beside it or below it, by their pages.
+std::string see_also(const CLI::App& command) {
+  std::vector<std::string> others;
+  if (const CLI::App* parent = command.get_parent()) {
+    others.push_back(fmt::format(".BR {} (1)", troff(full_name(*parent, '-'))));
+  }
+  for (const CLI::App* one : commands_of(command)) {
+    others.push_back(fmt::format(".BR {} (1)", troff(full_name(*one, '-'))));
+  }
+  return fmt::format(".SH SEE ALSO\n{}\n", fmt::join(others, ",\n"));
+}
+
+constexpr const char* kExitStatus = R"(.SH EXIT STATUS
+.TP
+.B 0
+Success.
+.TP
+.B 1
+A failure that one sentence on standard error explains.
+.TP
+.B 2
+Wrong usage: nothing was done.
+.TP
+.B 130
+Ended by Ctrl\-C (SIGINT).
+.TP
+.B 143
+Ended by SIGTERM.
+)";
+
 }  // namespace
 
 std::string man_page(const CLI::App& command, std::string_view version) {
   const std::string name = full_name(command, '-');
+  const CommandPage* own = find_command_page(page_name(command));
   std::string page = fmt::format(".TH {} 1 \"\" \"recald {}\" \"User Commands\"\n", name, version);
   page += fmt::format(".SH NAME\n{} \\- {}\n", troff(name), troff(command.get_description()));
   page += ".SH SYNOPSIS\n" + synopsis_of(command);
+  if (own != nullptr) page += fmt::format(".SH DESCRIPTION\n{}\n", troff(own->description));
   if (!commands_of(command).empty()) {
     page += ".SH COMMANDS\n";
     add_commands(command, page);
@@ -257,13 +309,8 @@ std::string man_page(const CLI::App& command, std::string_view version) {
   for (const bool positional : {true, false}) {
     for (const CLI::Option* option : options_of(command, positional)) add_option(*option, page);
   }
-  page += ".SH EXIT STATUS\n0 success; 1 a failure that one sentence explains; 2 wrong usage.\n";
-  if (command.get_parent() != nullptr) return page + ".SH SEE ALSO\n.BR recald (1)\n";
-  std::vector<std::string> others;
-  for (const CLI::App* one : commands_of(command)) {
-    others.push_back(fmt::format(".BR {} (1)", troff(full_name(*one, '-'))));
-  }
-  return page + fmt::format(".SH SEE ALSO\n{}\n", fmt::join(others, ",\n"));
+  if (own != nullptr) add_page(*own, page);
+  return page + kExitStatus + see_also(command);
 }
 
 std::string completion_script(const CLI::App& app, std::string_view shell) {

@@ -2,9 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <sstream>
 
+#include "daemon/commands/command_pages.hpp"
 #include "daemon/commands/console.hpp"
 #include "daemon/version.hpp"
 #include "tests/daemon/command_line.hpp"
@@ -59,6 +63,94 @@ TEST(CommandDocs, AManualPageHasEveryOption) {
   EXPECT_THAT(page, HasSubstr("(default 1)"));
   EXPECT_THAT(run({"man"}).out, HasSubstr(".SS Calibrate and forecast"));
   EXPECT_EQ(run({"man", "nosuch"}).exit_code, kUsage);
+  EXPECT_EQ(run({"man", "calibrte"}).err,
+            "recald: there is no command 'calibrte'; did you mean 'calibrate'?\n");
+}
+
+/// Words that lead to each command, "model list", by what the completion of bash has.
+std::vector<std::string> all_commands() {
+  std::vector<std::string> commands;
+  std::istringstream script{run({"completion", "bash"}).out};
+  for (std::string line; std::getline(script, line);) {
+    if (line.find("flags=\"") == std::string::npos) continue;
+    commands.push_back(line.substr(5, line.find('"', 5) - 5));
+  }
+  return commands;
+}
+
+/// As a shell splits them, up to where it sends the output elsewhere.
+std::vector<std::string> shell_words(std::string_view line) {
+  std::vector<std::string> words{""};
+  bool quoted = false;
+  for (const char c : line.substr(0, line.find_first_of("|>"))) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ' ' && !quoted) {
+      if (!words.back().empty()) words.emplace_back();
+    } else {
+      words.back() += c;
+    }
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+TEST(ManualPages, EveryCommandHasOneAndNoOtherHas) {
+  const std::vector<std::string> commands = all_commands();
+  ASSERT_GT(commands.size(), 40u);
+  EXPECT_EQ(command_pages().size(), commands.size());
+  for (const std::string& command : commands) {
+    SCOPED_TRACE(command);
+    const CommandPage* page = find_command_page(command);
+    ASSERT_NE(page, nullptr);
+    EXPECT_FALSE(page->examples.empty());
+    EXPECT_TRUE(page->description.ends_with('.')) << page->description;
+    std::vector<std::string> words = shell_words("man " + command);
+    const std::string text = run(words).out;
+    for (const char* section : {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "FILES",
+                                "EXIT STATUS", "SEE ALSO"}) {
+      EXPECT_THAT(text, HasSubstr(std::string{".SH "} + section + "\n"));
+    }
+    for (const char* code : {"0", "1", "2", "130", "143"}) {
+      EXPECT_THAT(text, HasSubstr(std::string{".B "} + code + "\n"));
+    }
+  }
+}
+
+// An example that does not run is worse than none.
+TEST(ManualPages, ExamplesAreCommandLines) {
+  for (const CommandPage& page : command_pages()) {
+    for (const CommandExample& example : page.examples) {
+      SCOPED_TRACE(example.line);
+      std::vector<std::string> words = shell_words(example.line);
+      ASSERT_EQ(words.front(), "recald");
+      words.erase(words.begin());
+      EXPECT_EQ(wrong_usage_of(words), "");
+      if (!page.command.empty()) {
+        EXPECT_TRUE(example.line.substr(7).starts_with(page.command)) << page.command;
+      }
+    }
+  }
+  EXPECT_THAT(wrong_usage_of({"check", "site.toml", "--metres"}), HasSubstr("'--meters'"));
+}
+
+TEST(ManualPages, GroffHasNothingToSay) {
+  if (std::system("command -v groff >/dev/null 2>&1") != 0) GTEST_SKIP() << "groff is not there";
+  const recald::testing::TemporaryFolder folder;
+  for (const std::string& command : all_commands()) {
+    SCOPED_TRACE(command);
+    recald::testing::write_text(folder / "page.1", run(shell_words("man " + command)).out);
+    EXPECT_THAT(lines_of("groff -man -Tutf8 -Kutf8 -ww -rLL=100n '" + (folder / "page.1").string() +
+                         "' 2>&1 >/dev/null"),
+                IsEmpty());
+  }
+}
+
+TEST(ManualPages, OfCommandsBelowOthersAreFoundByEitherName) {
+  const std::string page = run({"man", "model", "list"}).out;
+  EXPECT_THAT(page, HasSubstr(".TH recald-model-list 1"));
+  EXPECT_EQ(run({"man", "recald-model-list"}).out, page);
+  EXPECT_EQ(run({"man", "model-list"}).out, page);
 }
 
 class BashCompletion : public ::testing::Test {
