@@ -25,4 +25,14 @@ struct Machine {
 /// Whether this process may read and write a file or device. Opens nothing.
 [[nodiscard]] bool may_use(const std::filesystem::path& file);
 
+/// Of the user that the process runs as; empty: the number has no name.
+[[nodiscard]] std::string user_name();
+
+/// Why a file cannot be opened for reading, without its name: "does not exist". Empty: it can.
+[[nodiscard]] std::string why_unreadable(const std::filesystem::path& file);
+
+/// Why nothing can be written into a folder, or, where it does not exist yet, why it cannot be
+/// made. Empty: it can. Writes nothing.
+[[nodiscard]] std::string why_unwritable(const std::filesystem::path& folder);
+
 }  // namespace recald::system

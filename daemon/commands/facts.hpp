@@ -23,6 +23,9 @@ struct Fact {
 /// Of a site file; and of its store, its daemon and its secrets if the file can be read.
 [[nodiscard]] std::vector<Fact> site_facts(const std::filesystem::path& file);
 
+/// Each file that the site file names, opened; each folder that is written to. Secrets are apart.
+[[nodiscard]] std::vector<Fact> named_files(const SiteConfig& site);
+
 /// "3.1 MiB", "12.0 GiB"
 [[nodiscard]] std::string size_words(double bytes);
 

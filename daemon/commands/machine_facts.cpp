@@ -9,6 +9,7 @@
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/versions/library_versions.hpp"
 #include "daemon/commands/facts.hpp"
+#include "daemon/commit.hpp"
 #include "daemon/version.hpp"
 
 namespace recald::daemon {
@@ -17,14 +18,15 @@ namespace {
 Fact program() { return {"recald", kVersion}; }
 
 Fact build() {
-  const std::string_view commit{kCommit};
-  return {"build", fmt::format("{}, {}, commit {}", *kBuildType == '\0' ? "no type" : kBuildType,
+  const std::string_view commit = built_commit();
+  return {"build",
+          fmt::format("{}, {}, {}", *kBuildType == '\0' ? "no type" : kBuildType,
 #ifdef __clang__
-                               "clang " __clang_version__,
+                      "clang " __clang_version__,
 #else
-                               "GCC " __VERSION__,
+                      "GCC " __VERSION__,
 #endif
-                               commit.empty() ? "unknown" : commit)};
+                      commit.empty() ? "unknown commit" : fmt::format("commit {}", commit))};
 }
 
 Fact libraries() {
@@ -55,7 +57,10 @@ Fact memory() {
   return fact;
 }
 
-Fact user() { return {"user", fmt::format("{}", ::getuid())}; }
+Fact user() {
+  const std::string name = system::user_name();
+  return {"user", fmt::format("{} ({})", name.empty() ? "no name" : name, ::geteuid())};
+}
 
 Fact clock() {
   Fact fact{"clock", metering::to_string(std::chrono::floor<std::chrono::seconds>(

@@ -216,13 +216,13 @@ Fact secret(const std::string& name, const Result<std::string>& read) {
 }
 
 Fact key_file(const fs::path& file) {
-  std::error_code error;
-  const auto status = fs::status(file, error);
-  if (error || !fs::exists(status)) {
-    return stopping("[http] key_file", "cannot be found", file.string() + " does not exist");
+  if (const std::string why = system::why_unreadable(file); !why.empty()) {
+    return stopping("[http] key_file", "cannot be read", file.string() + " " + why);
   }
-  Fact fact{"[http] key_file", "is there"};
-  if ((status.permissions() & fs::perms::others_all) != fs::perms::none) {
+  Fact fact{"[http] key_file", "can be read"};
+  std::error_code ignored;
+  const fs::perms rights = fs::status(file, ignored).permissions();
+  if ((rights & fs::perms::others_all) != fs::perms::none) {
     fact.problem = fmt::format("everybody may read {}; chmod 640 or stricter", file.string());
   }
   return fact;
@@ -280,8 +280,8 @@ Facts secrets(const SiteConfig& site) {
   return facts;
 }
 
-constexpr std::array kOfSite{meters,  buses,  store_file, store_structure, disk,
-                             backups, events, jobs,       running_daemon,  secrets};
+constexpr std::array kOfSite{meters,  named_files, buses, store_file,     store_structure, disk,
+                             backups, events,      jobs,  running_daemon, secrets};
 
 }  // namespace
 

@@ -2,13 +2,18 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <array>
+#include <cstdio>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/system/file_lock.hpp"
+#include "daemon/site/config/register_map_file.hpp"
 #include "daemon/version.hpp"
 #include "tests/adapters/http/raw_client.hpp"
 #include "tests/adapters/http/self_signed.hpp"
@@ -68,6 +73,7 @@ class DoctorCommand : public ::testing::Test {
  protected:
   DoctorCommand() {
     write_text(path("site.toml"), kSite);
+    write_text(path("steam.csv"), "timestamp,meter,value,unit\n");
     write_secret("token", "0123456789SECRET2");
     write_secret("hook-token", "0123456789SECRET3");
     write_secret("mail-password", "SECRET4");
@@ -144,6 +150,83 @@ TEST_F(DoctorCommand, TheMachineAlone) {
                     HasSubstr("Linux "), HasSubstr("synchronised"), HasSubstr("EnergyPlus")));
   EXPECT_THAT(outcome.out,
               HasSubstr(fmt::format("{} processors", std::thread::hardware_concurrency())));
+}
+
+/// What a shell command prints, in one line.
+std::string said_by(const std::string& command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe{::popen(command.c_str(), "r"), ::pclose};
+  std::array<char, 256> line{};
+  const bool has_some = std::fgets(line.data(), line.size(), pipe.get()) != nullptr;
+  std::string text = has_some ? line.data() : "";
+  while (text.ends_with('\n')) text.pop_back();
+  return text;
+}
+
+TEST_F(DoctorCommand, SaysCommitAndUser) {
+  EXPECT_EQ(facts().at("user"), said_by("id -un") + " (" + said_by("id -u") + ")");
+  const std::string commit =
+      said_by("git -C '" RECALD_SOURCE_DIR "' rev-parse --short=12 HEAD 2>/dev/null");
+  EXPECT_THAT(facts().at("build"),
+              HasSubstr(commit.empty() ? " commit" : "commit " + std::string{commit}));
+}
+
+TEST_F(DoctorCommand, OpensWhatTheSiteFileNames) {
+  const auto found = facts();
+  EXPECT_EQ(found.at("readings steam.csv"), "can be read, 0.0 MiB");
+  EXPECT_EQ(found.at("store's folder ."), "can be written");
+  EXPECT_EQ(found.at("backups' folder backups"), "can be written");
+  EXPECT_THAT(found.at("[http] key_file"), HasSubstr("can be read"));
+  fs::remove(path("steam.csv"));
+  expect_problem(path("steam.csv").string() + " does not exist; put it there");
+  fs::create_directory(path("steam.csv"));
+  expect_problem(path("steam.csv").string() + " is a folder, not a file");
+  fs::remove(path("steam.csv"));
+  ASSERT_EQ(::mkfifo(path("steam.csv").c_str(), 0600), 0);  // would wait for ever
+  expect_problem(path("steam.csv").string() + " is not a file");
+}
+
+TEST_F(DoctorCommand, OpensWeatherMapsAndCertificates) {
+  edit_site("[alerts]\n", R"([weather]
+file = "place.csv"
+
+[bus.roof]
+type = "tcp"
+host = "127.0.0.1"
+port = 1
+
+[[meter]]
+id = "roof"
+utility = "electricity"
+source = "modbus"
+bus = "roof"
+unit = 7
+map = "own.toml"
+rated_kW = 400
+
+[alerts]
+)");
+  const std::string site = read_text(path("site.toml"));
+  write_text(path("site.toml"), site + "trusted_certificate = \"root.pem\"\n");
+  write_text(path("own.toml"), std::string{*shipped_register_map("abb-b23")});
+  write_text(path("place.csv"), "timestamp,dry_bulb_C\n");
+  const auto found = facts();
+  EXPECT_EQ(found.at("weather place.csv"), "can be read, 0.0 MiB");
+  EXPECT_EQ(found.at("register map own.toml"), "can be read, 0.0 MiB");
+  EXPECT_THAT(found.at("trusted certificate root.pem"),
+              AllOf(HasSubstr("cannot be read ! "), HasSubstr("root.pem does not exist")));
+}
+
+// Only where a user has fewer rights than root can be seen what a right keeps away.
+TEST_F(DoctorCommand, SaysWhatThisUserMayNotOpen) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  fs::permissions(path(""), fs::perms{0755});
+  fs::permissions(path("steam.csv"), fs::perms{0600});
+  ASSERT_EQ(::seteuid(65534), 0);
+  const auto found = facts();
+  ASSERT_EQ(::seteuid(0), 0);
+  EXPECT_THAT(found.at("user"), HasSubstr("(65534)"));
+  EXPECT_THAT(found.at("readings steam.csv"), HasSubstr("may not be read by this user"));
+  EXPECT_THAT(found.at("store's folder ."), HasSubstr("may not be written by this user"));
 }
 
 TEST_F(DoctorCommand, ASoundSite) {
