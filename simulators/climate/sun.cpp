@@ -16,7 +16,7 @@ double days_since_j2000(metering::Instant t) {
   return static_cast<double>(t.time_since_epoch().count()) / 86'400.0 - unix_days_of_j2000;
 }
 
-double mean_anomaly_rad(double days) { return (357.528 + 0.9856003 * days) * kRadian; }
+double mean_anomaly_rad(double since_days) { return (357.528 + 0.9856003 * since_days) * kRadian; }
 
 }  // namespace
 
@@ -28,21 +28,21 @@ double SunPosition::azimuth_deg() const {
 }
 
 SunPosition sun_position(metering::Instant t, const Place& place) {
-  const double days = days_since_j2000(t);
-  const double anomaly = mean_anomaly_rad(days);
-  const double mean_longitude_deg = 280.460 + 0.9856474 * days;
+  const double j2000_days = days_since_j2000(t);
+  const double anomaly = mean_anomaly_rad(j2000_days);
+  const double mean_longitude_deg = 280.460 + 0.9856474 * j2000_days;
   const double ecliptic_longitude =
       (mean_longitude_deg + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2.0 * anomaly)) * kRadian;
-  const double obliquity = (23.439 - 4e-7 * days) * kRadian;
+  const double obliquity = (23.439 - 4e-7 * j2000_days) * kRadian;
 
   // Keep right ascension and declination as vector components, which avoids quadrant errors.
   const double x = std::cos(ecliptic_longitude);
   const double y = std::cos(obliquity) * std::sin(ecliptic_longitude);
   const double z = std::sin(obliquity) * std::sin(ecliptic_longitude);
 
-  const double day_start = std::floor(days + 0.5) - 0.5;
-  const double utc_hours = (days - day_start) * 24.0;
-  const double sidereal_hours = 6.697375 + 0.0657098242 * days + utc_hours;
+  const double day_start = std::floor(j2000_days + 0.5) - 0.5;
+  const double utc_hours = (j2000_days - day_start) * 24.0;
+  const double sidereal_hours = 6.697375 + 0.0657098242 * j2000_days + utc_hours;
   const double local_sidereal = (sidereal_hours * 15.0 + place.longitude_deg) * kRadian;
 
   // Rotate about the pole to the local meridian, then tip the pole to the latitude.

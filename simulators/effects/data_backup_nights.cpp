@@ -40,9 +40,9 @@ class DataBackupNights final : public HiddenEffect {
   };
 
   [[nodiscard]] static bool at_turn_of_month(metering::Day day) {
-    const auto days = static_cast<unsigned>(metering::days_in(day.year() / day.month()));
+    const auto month_days = static_cast<unsigned>(metering::days_in(day.year() / day.month()));
     const auto date = static_cast<unsigned>(day.day());
-    return date <= kNightsAfter || date > days - kNightsBefore;
+    return date <= kNightsAfter || date > month_days - kNightsBefore;
   }
 
   EffectSettings settings_;

@@ -361,15 +361,15 @@ Json weak_directions_json(const assessment::AssessedCalibration& result) {
 }
 
 Json schedule_json(const model::HourlySchedule& schedule) {
-  Json days = Json::object();
+  Json by_day = Json::object();
   for (std::size_t i = 0; i < model::kDayTypes; ++i) {
-    Json hours = Json::array();
+    Json by_hour = Json::array();
     for (int hour = 0; hour < 24; ++hour) {
-      hours.push_back(results::number(schedule.at(static_cast<model::DayType>(i), hour)));
+      by_hour.push_back(results::number(schedule.at(static_cast<model::DayType>(i), hour)));
     }
-    days[model::kDayTypeNames[i]] = hours;
+    by_day[model::kDayTypeNames[i]] = by_hour;
   }
-  return days;
+  return by_day;
 }
 
 Json profile_object(const profile::ElectricityProfile& profile) {
