@@ -20,7 +20,7 @@
 namespace recald::daemon {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using recald::daemon::testing::Outcome;
 using recald::daemon::testing::run;
 using recald::testing::read_text;
@@ -233,14 +233,14 @@ TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {
     const Outcome outcome =
         run({"calibrate", path(site), "--json", "--draws", "600", "--burn-in", "200"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return json::parse(outcome.out);
+    return Json::parse(outcome.out);
   };
   // Two plausibilities differ: a live counter has a rated power.
   std::string with_file = read_text(folder_ / "site.toml");
   replace(with_file, "name_in_file = \"heat\"", "name_in_file = \"heat\"\nrated_kW = 900");
   write_text(folder_ / "site.toml", with_file);
-  const json from_file = calibrated("site.toml");
-  const json from_store = calibrated("live.toml");
+  const Json from_file = calibrated("site.toml");
+  const Json from_store = calibrated("live.toml");
   EXPECT_EQ(from_store["months"], from_file["months"]);
   EXPECT_EQ(from_store["parameters"], from_file["parameters"]);
   EXPECT_EQ(from_store["after"], from_file["after"]);
@@ -287,13 +287,13 @@ TEST_F(HalvesOfALiveSite, AreCalibratedAsTheirSum) {
     const Outcome outcome =
         run({"calibrate", path(site), "--json", "--draws", "600", "--burn-in", "200"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return json::parse(outcome.out);
+    return Json::parse(outcome.out);
   };
   std::string with_file = read_text(folder_ / "site.toml");
   replace(with_file, "name_in_file = \"heat\"", "name_in_file = \"heat\"\nrated_kW = 900");
   write_text(folder_ / "site.toml", with_file);
-  const json from_file = calibrated("site.toml");
-  const json from_store = calibrated("live.toml");
+  const Json from_file = calibrated("site.toml");
+  const Json from_store = calibrated("live.toml");
   EXPECT_EQ(from_store["months"], from_file["months"]);
   EXPECT_EQ(from_store["parameters"], from_file["parameters"]);
 }
@@ -378,7 +378,7 @@ TEST_F(LiveSite, TheDataRevisionIsThatOfTheReadings) {
   const auto revision = [&] {
     const Outcome outcome =
         run({"calibrate", path("live.toml"), "--json", "--draws", "300", "--burn-in", "100"});
-    return json::parse(outcome.out)["data_revision"].get<std::string>();
+    return Json::parse(outcome.out)["data_revision"].get<std::string>();
   };
   const std::string before = revision();
   EXPECT_EQ(revision(), before);
@@ -403,7 +403,7 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
 
   const auto outcome = work(job, now, nobody_stops_it());
   ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
-  json result = json::parse(outcome->result.document);
+  Json result = Json::parse(outcome->result.document);
   EXPECT_THAT(result["drift_not_followed"].get<std::string>(),
               HasSubstr("needs 13 months of all modelled meters"));
   result.erase("drift_not_followed");  // what has changed is said beside the calibration's own file
@@ -411,7 +411,7 @@ TEST_F(LiveSite, AJobCalibratesOnTheLatestClosedMonths) {
   EXPECT_EQ(result["months"].front()["month"], "2021-04");
   EXPECT_EQ(result["months"].back()["month"], "2021-11");
   EXPECT_EQ(outcome->folder, path("live-results") + "/calibration-7");
-  EXPECT_EQ(json::parse(read_text(std::filesystem::path{outcome->folder} / "calibration.json")),
+  EXPECT_EQ(Json::parse(read_text(std::filesystem::path{outcome->folder} / "calibration.json")),
             result);
   EXPECT_TRUE(std::filesystem::exists(std::filesystem::path{outcome->folder} / "report.html"));
   EXPECT_TRUE(outcome->forecasts.empty());
@@ -435,12 +435,12 @@ TEST_F(LiveSite, AJobCalibratesTheMetamodelOfAStoredDesign) {
   const auto outcome =
       work({}, std::chrono::sys_days{std::chrono::year{2021} / 12 / 20}, nobody_stops_it());
   ASSERT_TRUE(outcome.has_value()) << outcome.error().message;
-  const json result = json::parse(outcome->result.document);
+  const Json result = Json::parse(outcome->result.document);
   EXPECT_EQ(result["model"], "metamodel");
   EXPECT_TRUE(outcome->accepted) << outcome->message;
   // Nine months were simulated; October and November, measured since, show how well it does.
   std::map<std::string, int> months;
-  for (const json& month : result["months"]) ++months[month["role"].get<std::string>()];
+  for (const Json& month : result["months"]) ++months[month["role"].get<std::string>()];
   EXPECT_EQ(months, (std::map<std::string, int>{{"calibration", 9}, {"validation", 2}}));
   const std::filesystem::path folder{outcome->folder};
   EXPECT_TRUE(std::filesystem::exists(folder / "calibration.json"));
@@ -491,9 +491,9 @@ TEST_F(LiveSite, AMeterThatTheModelHasNoUseForStopsNothing) {
     const Outcome outcome =
         run({"calibrate", path("live.toml"), "--json", "--draws", "300", "--burn-in", "100"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return json::parse(outcome.out);
+    return Json::parse(outcome.out);
   };
-  const json before = calibrated();
+  const Json before = calibrated();
   std::string text = read_text(folder_ / "live.toml");
   const auto first = text.find("[[meter]]");
   text.insert(first,
@@ -501,12 +501,12 @@ TEST_F(LiveSite, AMeterThatTheModelHasNoUseForStopsNothing) {
               "bus = \"plant\"\nunit = 3\nmap = \"abb-b23\"\nrated_kW = 50\n"
               "interval = \"1h\"\n\n");
   write_text(folder_ / "live.toml", text);
-  const json beside = calibrated();
+  const Json beside = calibrated();
   EXPECT_EQ(beside["parameters"], before["parameters"]);
 
   const Outcome replayed = run({"replay", path("live.toml"), "--json"});
   ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
-  const json meters = json::parse(replayed.out)["meters"];
+  const Json meters = Json::parse(replayed.out)["meters"];
   ASSERT_EQ(meters.size(), 3U);
   EXPECT_EQ(meters[0]["meter"], "tenant");
   EXPECT_EQ(meters[0]["months"], 0);

@@ -21,7 +21,7 @@ namespace recald::daemon::live_weather_test {
 namespace {
 
 using metering::Instant;
-using nlohmann::json;
+using Json = nlohmann::json;
 using recald::testing::edited;
 using recald::testing::read_text;
 using recald::testing::write_text;
@@ -90,13 +90,13 @@ class LiveWeather : public ::testing::Test {
   }
 
   /// What a calibration gives on the latest closed months.
-  json calibrated(Instant now = kNow) {
+  Json calibrated(Instant now = kNow) {
     JobWatch watch;
     const auto outcome = make_site_work(share({site_, calendar_}))({}, now, watch);
     EXPECT_TRUE(outcome.has_value()) << outcome.error().message;
     EXPECT_FALSE(outcome->failed) << outcome->message;
     said_ = outcome->message;
-    return json::parse(outcome->result.document);
+    return Json::parse(outcome->result.document);
   }
 
   recald::testing::TemporaryFolder folder_;
@@ -108,7 +108,7 @@ class LiveWeather : public ::testing::Test {
   std::string said_;
 };
 
-std::string last_month(const json& result) { return result["months"].back()["month"]; }
+std::string last_month(const Json& result) { return result["months"].back()["month"]; }
 
 TEST_F(LiveWeather, CheckExplainsASensor) {
   const auto checked = [&] { return testing::run({"check", (folder_ / "live.toml").string()}); };
@@ -162,9 +162,9 @@ TEST_F(LiveWeather, ASensorsMonthIsCalibratedOn) {
     polling.begin(site_);
     loop.run_for(kDecember - kNovember + minutes{5});
   }
-  const json result = calibrated();
+  const Json result = calibrated();
   EXPECT_EQ(last_month(result), "2025-11");
-  const json& november = result["weather"].back();
+  const Json& november = result["weather"].back();
   EXPECT_EQ(november["month"], "2025-11");
   EXPECT_NEAR(november["known"].get<double>(), 1.0, 1e-9);
   EXPECT_NEAR(november["from"]["sensor 'roof'"].get<double>(), 1.0, 1e-9);
@@ -227,8 +227,8 @@ class Sent : public LiveWeather {
     wait_->start();
   }
   void ask(const char* by) { ASSERT_TRUE(jobs_->ask(JobKind::calibration, by).has_value()); }
-  json result_of(const StoredJob& job) {
-    return json::parse(store_->job(job.number).value().value().result.document);
+  Json result_of(const StoredJob& job) {
+    return Json::parse(store_->job(job.number).value().value().result.document);
   }
 
   /// As a weather service does, an hour of a quantity after the other.
@@ -245,12 +245,12 @@ class Sent : public LiveWeather {
               return rig_->gateway().take_pushed(meter, std::move(readings), put_right);
             }};
     for (const weather::SensorQuantity& quantity : weather::kSensorQuantities) {
-      json readings = json::array();
+      Json readings = Json::array();
       for (Instant t = from; t < to; t += hours{1}) {
         readings.push_back(
             {{"time", metering::to_string(t)}, {"value", truth_.find(t)->*quantity.member}});
       }
-      const json body{{"meter", "roof"}, {"unit", quantity.unit}, {"readings", readings}};
+      const Json body{{"meter", "roof"}, {"unit", quantity.unit}, {"readings", readings}};
       const http::Response response = answer(
           served, {.method = http::Method::post, .path = "/api/v1/readings", .body = body.dump()});
       ASSERT_EQ(response.status, 200) << response.body;
@@ -271,14 +271,14 @@ TEST_F(Sent, WeatherThatWasSentIsCalibratedOn) {
   describe("[weather]\nfile = \"weather.csv\"\nvalues = \"mean\"\n", kSender);
   begin();
   send(kNovember, kDecember);
-  const json result = calibrated();
+  const Json result = calibrated();
   EXPECT_EQ(last_month(result), "2025-11");
   EXPECT_NEAR(result["weather"].back()["from"]["sensor 'roof'"].get<double>(), 1.0, 1e-9);
 
   // What the whole file gives, it gives.
   write_text(folder_ / "weather.csv", whole_file_);
   site_.sensors.clear();
-  const json from_file = calibrated();
+  const Json from_file = calibrated();
   EXPECT_EQ(from_file["parameters"], result["parameters"]);
   EXPECT_EQ(from_file["months"], result["months"]);
 }
@@ -324,7 +324,7 @@ TEST_F(Sent, ASilentSensorIsSaidFromWhenToWhen) {
   ask("month");
   loop_.run_for(hours{2});
   ASSERT_THAT(ended_, SizeIs(1));
-  const json first = result_of(ended_[0]);
+  const Json first = result_of(ended_[0]);
   EXPECT_EQ(last_month(first), "2025-10");
   EXPECT_THAT(
       first["warnings"].get<std::vector<std::string>>(),

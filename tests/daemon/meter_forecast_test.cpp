@@ -12,7 +12,7 @@
 namespace recald::daemon::meter_forecast_test {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using recald::daemon::testing::Outcome;
 using recald::daemon::testing::run;
 using recald::testing::read_text;
@@ -40,11 +40,11 @@ class MeterForecast : public ::testing::Test {
   [[nodiscard]] std::string path(const std::string& name) const {
     return (folder_ / name).string();
   }
-  [[nodiscard]] json calibrated(const std::string& out) const {
+  [[nodiscard]] Json calibrated(const std::string& out) const {
     const Outcome outcome = run({"calibrate", path("site.toml"), "--out", path(out)});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("a regression of the meter's days on temperature"));
-    return json::parse(read_text(folder_ / out / "calibration.json"));
+    return Json::parse(read_text(folder_ / out / "calibration.json"));
   }
   /// Only the first two columns of the weather are left.
   void keep_temperature_alone() const {
@@ -60,12 +60,12 @@ class MeterForecast : public ::testing::Test {
 };
 
 TEST_F(MeterForecast, EveryMeterIsForecastFromItsDays) {
-  const json result = calibrated("out");
+  const Json result = calibrated("out");
   EXPECT_EQ(result["model"], "change_point");
   EXPECT_THAT(result["parameters"], SizeIs(0));
   EXPECT_THAT(result["predictions"], SizeIs(2 * 12));
   for (const char* output : {"electricity_daily_kWh", "district_heat_daily_kWh"}) {
-    const json& unseen = result["forecast"]["validation"][output];
+    const Json& unseen = result["forecast"]["validation"][output];
     EXPECT_EQ(unseen["months"], 3) << output;
     EXPECT_LT(unseen["cvrmse"], 0.05) << output;
     EXPECT_LT(std::abs(unseen["nmbe_sim_minus_meas"].get<double>()), 0.05) << output;
@@ -74,9 +74,9 @@ TEST_F(MeterForecast, EveryMeterIsForecastFromItsDays) {
 }
 
 TEST_F(MeterForecast, ATemperatureIsEnough) {
-  const json before = calibrated("before");
+  const Json before = calibrated("before");
   keep_temperature_alone();
-  const json after = calibrated("after");
+  const Json after = calibrated("after");
   EXPECT_EQ(before["forecast"], after["forecast"]);
   EXPECT_EQ(before["predictions"], after["predictions"]);
 }
@@ -104,7 +104,7 @@ TEST_F(MeterForecast, WithoutAPeriodEachMeterHasItsOwnMonths) {
   write_text(folder_ / "readings.csv", kept);
   write_text(folder_ / "site.toml", std::string{recald::testing::kSampleMeters} +
                                         "[weather]\nfile = \"weather.csv\"\nvalues = \"mean\"\n");
-  const json result = calibrated("out");
+  const Json result = calibrated("out");
   EXPECT_EQ(result["months"][0]["month"], "2021-01");
   EXPECT_THAT(result["months"], SizeIs(12));
   EXPECT_EQ(result["forecast"]["three_months_left_out"]["electricity_daily_kWh"]["months"], 12);
@@ -132,7 +132,7 @@ TEST_F(UntoldModel, IsNotCalibratedAndMetersAreForecast) {
   const Outcome outcome = run({"calibrate", path("site.toml"), "--out", path("out")});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr(why_));
-  const json result = json::parse(read_text(folder_ / "out" / "calibration.json"));
+  const Json result = Json::parse(read_text(folder_ / "out" / "calibration.json"));
   EXPECT_EQ(result["status"], "forecast");
   EXPECT_THAT(result["not_calibrated_because"].get<std::string>(), HasSubstr(why_));
   EXPECT_LT(result["forecast"]["validation"]["electricity_daily_kWh"]["cvrmse"], 0.05);

@@ -11,7 +11,7 @@
 namespace recald::daemon::state_messages_test {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -37,7 +37,7 @@ TEST(StateMessages, HaveWhatTheRegistersHaveInWords) {
   ASSERT_THAT(messages, SizeIs(2));
   EXPECT_EQ(messages[0].topic, "buildings/north/depot/state");
   EXPECT_TRUE(messages[0].is_retained);
-  const json whole = json::parse(messages[0].payload);
+  const Json whole = Json::parse(messages[0].payload);
   EXPECT_EQ(whole["quality"], "something should be looked at");
   EXPECT_EQ(whole["drift_state"], "an alarm is open");
   EXPECT_EQ(whole["alarm_code"], 4);
@@ -45,7 +45,7 @@ TEST(StateMessages, HaveWhatTheRegistersHaveInWords) {
   EXPECT_EQ(whole["model_age_d"], nullptr);
   EXPECT_FALSE(whole.contains("uptime_s"));
   EXPECT_EQ(messages[1].topic, "buildings/north/depot/meter/main/state");
-  const json meter = json::parse(messages[1].payload);
+  const Json meter = Json::parse(messages[1].payload);
   EXPECT_EQ(meter["power_kW"], 12.5);
   EXPECT_EQ(meter["month_forecast_q50_kWh"], 240.0);
   EXPECT_EQ(meter["expected_q50_kW"], nullptr);
@@ -71,16 +71,16 @@ TEST(StateMessages, HomeAssistantIsToldOnRequest) {
       site_with("url = \"mqtt://localhost\"\nhome_assistant = \"homeassistant\"\n");
   SiteFacts facts;
   facts.meters.resize(1);
-  std::map<std::string, json> states;
+  std::map<std::string, Json> states;
   for (const mqtt::Message& one : state_messages(site, facts)) {
-    states[one.topic] = json::parse(one.payload);
+    states[one.topic] = Json::parse(one.payload);
   }
   const auto messages = discovery_messages(site);
   EXPECT_THAT(messages, SizeIs(12));
   for (const mqtt::Message& one : messages) {
     EXPECT_TRUE(one.is_retained);
     EXPECT_TRUE(one.topic.starts_with("homeassistant/sensor/recald_depot")) << one.topic;
-    const json config = json::parse(one.payload);
+    const Json config = Json::parse(one.payload);
     ASSERT_TRUE(states.contains(config["state_topic"])) << config;
     const std::string shown = config["value_template"];  // {{ value_json.KEY }}
     const std::string key = shown.substr(14, shown.size() - 17);

@@ -18,7 +18,7 @@ namespace {
 
 using diagnosis::Diagnosis;
 using diagnosis::ModelGap;
-using nlohmann::json;
+using Json = nlohmann::json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -27,13 +27,13 @@ using ::testing::StartsWith;
 
 class DiagnosisFiles : public ::testing::Test {
  protected:
-  [[nodiscard]] json json_of(const Diagnosis& d, const std::vector<ModelGap>& others = {}) const {
+  [[nodiscard]] Json json_of(const Diagnosis& d, const std::vector<ModelGap>& others = {}) const {
     RunFacts facts;
     facts.recald_version = "0.1.0";
     facts.data_revision = "9f2c";
     facts.model_version = "hourly-3b1c";
     facts.seed = 7;
-    return json::parse(diagnosis_json(d, site_, facts, others));
+    return Json::parse(diagnosis_json(d, site_, facts, others));
   }
   [[nodiscard]] report::DiagnosisData page_data(const Diagnosis& d,
                                                 const std::vector<ModelGap>& others = {}) const {
@@ -47,14 +47,14 @@ class DiagnosisFiles : public ::testing::Test {
 };
 
 TEST_F(DiagnosisFiles, HasEveryEntryOfTheContract) {
-  const json result = json_of(recald::testing::one_named(site_));
+  const Json result = json_of(recald::testing::one_named(site_));
   for (const char* entry : {"outcome", "why", "located", "candidates", "added", "additions", "gap",
                             "base_fit", "not_identifiable_here", "warnings", "seed",
                             "recald_version", "data_revision", "model_version", "wall_s"}) {
     EXPECT_TRUE(result.contains(entry)) << entry;
   }
   EXPECT_EQ(result["outcome"], "named");
-  EXPECT_EQ(result["added"], json::array({"steam_trap_leak"}));
+  EXPECT_EQ(result["added"], Json::array({"steam_trap_leak"}));
   EXPECT_EQ(result["located"][0]["meter"], "steam");
   EXPECT_EQ(result["gap"]["hourly"]["before"]["steam"]["cvrmse_daily"], 0.14);
   EXPECT_EQ(result["gap"]["hourly"]["after"]["steam"]["cvrmse_daily"], 0.08);
@@ -62,12 +62,12 @@ TEST_F(DiagnosisFiles, HasEveryEntryOfTheContract) {
 }
 
 TEST_F(DiagnosisFiles, WritesAnAdditionWithItsPosteriorAndDates) {
-  const json addition = json_of(recald::testing::one_named(site_))["additions"][0];
+  const Json addition = json_of(recald::testing::one_named(site_))["additions"][0];
   EXPECT_EQ(addition["effect"], "steam_trap_leak");
   EXPECT_EQ(addition["key"], "steam_trap_leak@");
   EXPECT_EQ(addition["status"], "added");
   EXPECT_EQ(addition["monthly_kWh"]["steam"], 2920.0);
-  const json& loss = addition["parameters"][0];
+  const Json& loss = addition["parameters"][0];
   EXPECT_EQ(loss["mode"], 4.0);
   EXPECT_EQ(loss["sd"], 0.5);
   EXPECT_NEAR(loss["q05"].get<double>(), 3.1, 1e-9);
@@ -79,11 +79,11 @@ TEST_F(DiagnosisFiles, WritesAnAdditionWithItsPosteriorAndDates) {
 
 TEST_F(DiagnosisFiles, WritesCandidatesWithTheirPosteriors) {
   const Diagnosis d = recald::testing::nothing_named(site_);
-  const json candidates = json_of(d)["candidates"];
+  const Json candidates = json_of(d)["candidates"];
   ASSERT_EQ(candidates.size(), 4u);
   EXPECT_EQ(candidates[0]["effect"], "none");
   EXPECT_FALSE(candidates[0].contains("parameters"));
-  const json& leak = candidates[1];
+  const Json& leak = candidates[1];
   const Prior& prior = d.candidates[0].parameters[0].prior;
   EXPECT_NEAR(leak["parameters"][0]["mode"].get<double>(), prior.at_score(0.5).value, 1e-9);
   EXPECT_NEAR(leak["parameters"][0]["q95"].get<double>(),
@@ -94,7 +94,7 @@ TEST_F(DiagnosisFiles, WritesCandidatesWithTheirPosteriors) {
 }
 
 TEST_F(DiagnosisFiles, TakesBackWhatWasNotConfirmed) {
-  const json result = json_of(recald::testing::one_taken_back(site_));
+  const Json result = json_of(recald::testing::one_taken_back(site_));
   EXPECT_EQ(result["outcome"], "unknown");
   EXPECT_TRUE(result["added"].empty());
   EXPECT_EQ(result["additions"][0]["status"], "tried and withdrawn");
@@ -108,7 +108,7 @@ TEST_F(DiagnosisFiles, NamesEachEffectThatCannotBeSeenOnce) {
                 [](const auto& p) { return p.effect == "server_room"; });
   // The server room stands twice, always and since a day; the leak was weighed.
   d.candidates.push_back(recald::testing::candidate_of(site_, "server_room", true));
-  const json list = json_of(d)["not_identifiable_here"];
+  const Json list = json_of(d)["not_identifiable_here"];
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0]["effect"], "wind_infiltration");
   EXPECT_EQ(list[1]["effect"], "server_room");
@@ -118,7 +118,7 @@ TEST_F(DiagnosisFiles, NamesEachEffectThatCannotBeSeenOnce) {
 TEST_F(DiagnosisFiles, SaysNothingOfWhatWasNotAskedBesideAnAssumedEffect) {
   Diagnosis d = recald::testing::one_named(site_);
   d.passes[0].naming.probabilities = {{"steam_trap_leak", -1, 1.0, 0}};
-  const json list = json_of(d)["not_identifiable_here"];
+  const Json list = json_of(d)["not_identifiable_here"];
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0]["effect"], "wind_infiltration");
 }
@@ -126,7 +126,7 @@ TEST_F(DiagnosisFiles, SaysNothingOfWhatWasNotAskedBesideAnAssumedEffect) {
 TEST_F(DiagnosisFiles, GivesTheProbabilityOfWhatWasNotFitted) {
   Diagnosis d = recald::testing::nothing_named(site_);
   d.passes[0].naming.probabilities.push_back({"plug_growth", -1, 0.02, {}});
-  const json candidates = json_of(d)["candidates"];
+  const Json candidates = json_of(d)["candidates"];
   ASSERT_EQ(candidates.size(), 5u);
   EXPECT_EQ(candidates[4]["effect"], "plug_growth");
   EXPECT_EQ(candidates[4]["probability"], 0.02);
@@ -137,9 +137,9 @@ TEST_F(DiagnosisFiles, GivesTheProbabilityOfWhatWasNotFitted) {
 TEST_F(DiagnosisFiles, GivesProbabilitiesForOtherPriors) {
   Diagnosis d = recald::testing::nothing_named(site_);
   d.passes[0].naming.probabilities = {{"none", -1, 0.7, {}}, {"steam_trap_leak", -1, 0.3, {}}};
-  const json even = json_of(d);
+  const Json even = json_of(d);
   EXPECT_EQ(even["prior_none"], 0.5);
-  const json& leak = even["candidates"][1];
+  const Json& leak = even["candidates"][1];
   EXPECT_EQ(leak["probability_at_prior_none"]["0.5"], 0.3);
   EXPECT_NEAR(leak["probability_at_prior_none"]["0.9"].get<double>(), 0.3 / 6.6, 1e-12);
   EXPECT_NEAR(page_data(d).candidates[0].if_nine_in_ten_lack_nothing, 6.3 / 6.6, 1e-12);
@@ -154,11 +154,11 @@ TEST_F(DiagnosisFiles, GivesOtherModelsAnEntryOfTheirOwn) {
                      .before = {{0.02, 0.12, -30.0, 0.5}},
                      .after = {{0.01, 0.07, std::nan(""), 0.4}},
                      .change = {{{3.0, 1.5}, {-0.02, 0.01}, {-0.09, -0.004}}}};
-  const json gap = json_of(recald::testing::one_named(site_), {epc})["gap"];
+  const Json gap = json_of(recald::testing::one_named(site_), {epc})["gap"];
   EXPECT_TRUE(gap.contains("hourly"));
   EXPECT_EQ(gap["epc"]["before"]["steam_daily_kWh"]["cvrmse"], 0.12);
   EXPECT_TRUE(gap["epc"]["after"]["steam_daily_kWh"]["log_score"].is_null());
-  const json& change = gap["epc"]["change"]["steam_daily_kWh"];
+  const Json& change = gap["epc"]["change"]["steam_daily_kWh"];
   EXPECT_EQ(change["log_score"]["sum"], 3.0);
   EXPECT_EQ(change["log_score"]["se"], 1.5);
   EXPECT_EQ(change["nmbe_size"]["q95"], 0.01);
