@@ -47,7 +47,7 @@ std::string zone_like(std::string_view zone_name) {
   std::vector<std::string> cities;
   for (const date::time_zone& zone : zones) cities.push_back(city_of(zone.name()));
   const std::vector<std::string_view> names(cities.begin(), cities.end());
-  const std::string_view nearest = nearest_name(city_of(zone_name), names);
+  const std::string_view nearest = nearest_name(city_of(zone_name), names, 1.0 / 3.0);
   if (nearest.empty()) return {};
   return zones[static_cast<std::size_t>(std::ranges::find(names, nearest) - names.begin())].name();
 }

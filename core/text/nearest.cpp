@@ -25,12 +25,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string_view nearest_name(std::string_view text, std::span<const std::string_view> candidates) {
+std::string_view nearest_name(std::string_view text, std::span<const std::string_view> candidates,
+                              double wrong_share_max) {
   std::string_view best;
   std::size_t best_distance = 0;
   for (const std::string_view candidate : candidates) {
     const std::size_t distance = edit_distance(text, candidate);
-    if (distance * 2 > candidate.size()) continue;
+    if (static_cast<double>(distance) > wrong_share_max * static_cast<double>(candidate.size())) {
+      continue;
+    }
     if (best.empty() || distance < best_distance) {
       best = candidate;
       best_distance = distance;

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 const Prior kAirflow{0.3, 1.0, 1.2};
 
 // Worked by hand: variance 0.64 and median 0.3 are a likelihood of precision 0.5625 at 0.3 / 0.36.
-TEST(Evidence, IsThePosteriorWithoutItsPrior) {
+TEST(PosteriorEvidence, IsThePosteriorWithoutItsPrior) {
   const SitePosterior site{kAirflow.at_score(0.3 - kQ95 * 0.8).value, kAirflow.at_score(0.3).value,
                            kAirflow.at_score(0.3 + kQ95 * 0.8).value, kAirflow};
   const auto evidence = evidence_of(std::vector{site});
@@ -29,7 +29,7 @@ TEST(Evidence, IsThePosteriorWithoutItsPrior) {
   EXPECT_NEAR(evidence[0].sd, 1.0 / 0.75, 1e-6);
 }
 
-TEST(Evidence, OfAPosteriorThatIsItsPriorOrWiderIsNone) {
+TEST(PosteriorEvidence, OfAPosteriorThatIsItsPriorOrWiderIsNone) {
   const SitePosterior prior_itself{kAirflow.quantile(0.05), kAirflow.quantile(0.5),
                                    kAirflow.quantile(0.95), kAirflow};
   const SitePosterior wider{kAirflow.quantile(0.01), kAirflow.quantile(0.7),
