@@ -100,7 +100,8 @@ hidden=$effect
 outcome=$(said 's/^Outcome: \([^.]*\)[.].*/\1/p')
 found=$(said 's/^Outcome: [^.]*[.] *Missing from the model: "\(.*\)"[.]$/\1/p')
 if [ -n "$found" ]; then
-  sure=$(said 's/^ *\([0-9.]* %\)  .*/\1/p'), $(said 's/^Scatter of days .* in the \([0-9]* held-out months\): .*/confirmed on \1/p')
+  months=$(said 's/^Scatter of days .* in the \([0-9]*\) held-out months: .*/\1/p')
+  sure="$(said 's/^ *\([0-9.]* %\)  .*/\1/p')${months:+, confirmed on $months months that nothing was fitted to}"
 else
   found="no single effect ($outcome)"
   sure=$(sed -n '/^Explanations:/,/^[^ E]/s/^ *\([0-9.]* %\)  \(.*\)/\2 \1/p' "$dir/diagnose.txt" | head -n 3 | paste -sd, | sed 's/,/, /g')
