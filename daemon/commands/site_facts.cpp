@@ -236,7 +236,8 @@ Fact certificate(const fs::path& file) {
   if (*end < time_of_check()) {
     return stopping(fact.name, fact.value, "the certificate has ended; put a new one in its place");
   }
-  if (*end < time_of_check() + kSoon) fact.problem = "the certificate ends within 30 days; get a new one";
+  if (*end < time_of_check() + kSoon)
+    fact.problem = "the certificate ends within 30 days; get a new one";
   return fact;
 }
 

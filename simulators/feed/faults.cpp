@@ -43,7 +43,8 @@ class Agenda {
 std::size_t draw_count(const FaultHabit& habit, Rng& rng) {
   const double u = rng.uniform();
   const double hours = habit.shortest_h + (habit.longest_h - habit.shortest_h) * u * u;
-  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(hours * kFaultSlotsPerHour)));
+  return std::max<std::size_t>(1,
+                               static_cast<std::size_t>(std::lround(hours * kFaultSlotsPerHour)));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-/// The draws in the hands of R: its package posterior reads the files and agrees on their diagnostics.
+/// The draws in the hands of R: its package posterior reads the files and agrees on their
+/// diagnostics.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -37,19 +38,20 @@ TEST(ReadByR, TheDrawsAreReadByPosterior) {
   const auto path = [&](std::string_view name) { return (folder / name).string(); };
   recald::testing::write_sample_design(folder / "design");
   const testing::Outcome outcome =
-      testing::run({"calibrate", "--doe", path("design"), "--json", "--out", path("out"), "--sampler", "dram",
-                    "--draws", "2000", "--burn-in", "500"});
+      testing::run({"calibrate", "--doe", path("design"), "--json", "--out", path("out"),
+                    "--sampler", "dram", "--draws", "2000", "--burn-in", "500"});
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
-  recald::testing::write_text(folder / "read.R",
-             "chains <- lapply(1:4, function(k) read.csv(sprintf('" + path("out") +
-                 "/draws_%d.csv', k), comment.char = '#', check.names = FALSE))\n"
-                 "draws <- posterior::as_draws_array(simplify2array(lapply(chains, as.matrix)) |>\n"
-                 "  aperm(c(1, 3, 2)))\n"
-                 "draws <- draws[, , -(1:2)]  # lp__ and accept_stat__\n"
-                 "s <- posterior::summarise_draws(draws, 'rhat', 'ess_bulk', 'ess_tail')\n"
-                 "cat(posterior::niterations(draws), posterior::nchains(draws), '\\n')\n"
-                 "cat(sprintf('%s %.8f %.4f %.4f\\n', s$variable, s$rhat, s$ess_bulk, s$ess_tail),"
-                 " sep = '')\n");
+  recald::testing::write_text(
+      folder / "read.R",
+      "chains <- lapply(1:4, function(k) read.csv(sprintf('" + path("out") +
+          "/draws_%d.csv', k), comment.char = '#', check.names = FALSE))\n"
+          "draws <- posterior::as_draws_array(simplify2array(lapply(chains, as.matrix)) |>\n"
+          "  aperm(c(1, 3, 2)))\n"
+          "draws <- draws[, , -(1:2)]  # lp__ and accept_stat__\n"
+          "s <- posterior::summarise_draws(draws, 'rhat', 'ess_bulk', 'ess_tail')\n"
+          "cat(posterior::niterations(draws), posterior::nchains(draws), '\\n')\n"
+          "cat(sprintf('%s %.8f %.4f %.4f\\n', s$variable, s$rhat, s$ess_bulk, s$ess_tail),"
+          " sep = '')\n");
   std::istringstream words{output_of("Rscript " + path("read.R"))};
   int iterations = 0;
   int chains = 0;

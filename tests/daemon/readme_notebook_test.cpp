@@ -1,5 +1,5 @@
-/// The notebook of daemon/gateway/serve/notebook.md, run against a running daemon and a real calibration.
-/// run_readme_notebook.py says what is checked.
+/// The notebook of daemon/gateway/serve/notebook.md, run against a running daemon and a real
+/// calibration. run_readme_notebook.py says what is checked.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -60,7 +60,8 @@ class Arrivals {
   /// Waits a moment for the first.
   [[nodiscard]] std::vector<mqtt::Message> take() {
     std::unique_lock lock{mutex_};
-    changed_.wait_for(lock, kLookForBatches, [&] { return !waiting_.empty() || is_new_connection_; });
+    changed_.wait_for(lock, kLookForBatches,
+                      [&] { return !waiting_.empty() || is_new_connection_; });
     std::vector<mqtt::Message> taken;
     while (!waiting_.empty() && taken.size() < kAtOnce) {
       bytes_ -= waiting_.front().payload.size();
@@ -88,7 +89,9 @@ bool is_less(const record::Progress& has, const record::Progress& wanted) {
   return has.entries < wanted.entries || has.events < wanted.events || has.results < wanted.results;
 }
 
-metering::Instant time_of_arrival() { return std::chrono::floor<seconds>(std::chrono::system_clock::now()); }
+metering::Instant time_of_arrival() {
+  return std::chrono::floor<seconds>(std::chrono::system_clock::now());
+}
 
 class Ingester {
  public:

@@ -8,7 +8,9 @@ namespace recald::daemon {
 namespace {
 
 /// The shortest text that reads back as the same number; empty if it is not finite.
-std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+std::string csv_number(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : "";
+}
 
 std::string reading_line(const std::string& meter, const metering::Reading& reading) {
   return fmt::format("{},{},{},kW,{},{},{}\n", metering::to_string(reading.start), meter,
