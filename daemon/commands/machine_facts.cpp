@@ -9,7 +9,7 @@
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/versions/library_versions.hpp"
 #include "daemon/commands/facts.hpp"
-#include "daemon/commit.hpp"
+#include "daemon/commands/commit.hpp"
 #include "daemon/version.hpp"
 
 namespace recald::daemon {

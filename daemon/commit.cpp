@@ -1,9 +1,0 @@
-#include "daemon/commit.hpp"
-
-#include "daemon/commit_text.hpp"  // made anew with each commit: nothing else includes it
-
-namespace recald::daemon {
-
-std::string_view built_commit() { return kCommitText; }
-
-}  // namespace recald::daemon
