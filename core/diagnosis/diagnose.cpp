@@ -200,7 +200,7 @@ class Search {
   }
 
   Result<void> begin() {
-    Predictor base{site_, {}, proceed_};
+    Predictor base{site_, {}, proceed_, options_.executor};
     if (auto asked = ask(base); !asked) return asked;
     auto first = lay_ground(base, site_, question_.names.evidence.scores);
     if (!first) return tl::unexpected(first.error());
@@ -213,7 +213,7 @@ class Search {
   Result<bool> turn() {
     const std::size_t count = result_.passes.size();
     Rng rng{options_.seed, streams::kPasses[count]};
-    Predictor predictor{site_, accepted_, proceed_};
+    Predictor predictor{site_, accepted_, proceed_, options_.executor};
     auto pass = search(predictor, rng);
     if (!pass) return tl::unexpected(pass.error());
     const bool named = pass->naming.outcome == Outcome::named && may_add(count);
@@ -342,7 +342,7 @@ class Search {
   /// Adds the effect to the model. @param found  The base parameters fitted together with it.
   Result<void> take_up(const Addition& addition, const JointFit& found) {
     accepted_.push_back(alteration_of(addition.candidate, site_.facts(), addition.eta));
-    Predictor altered{site_, accepted_, proceed_};
+    Predictor altered{site_, accepted_, proceed_, options_.executor};
     auto next = lay_next_ground(altered, site_, now(), found);
     if (!next) return tl::unexpected(next.error());
     latest_ = std::move(*next);

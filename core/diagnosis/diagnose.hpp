@@ -11,6 +11,7 @@
 #include "core/diagnosis/locate.hpp"
 #include "core/diagnosis/naming.hpp"
 #include "core/display/warning.hpp"
+#include "core/executor.hpp"
 #include "core/result.hpp"
 
 namespace recald::diagnosis {
@@ -24,6 +25,7 @@ struct DiagnoseOptions {
   /// added in this order and kept, whatever their probability and the held-out scores.
   /// Nothing else is added.
   std::vector<std::string> assumed = {};
+  ForEachIndex executor = {};  ///< Runs of the model side by side; empty: in this thread.
 };
 
 /// One added effect, as found when it was added.
@@ -72,7 +74,7 @@ struct Diagnosis {
 };
 
 /// Progress in words and as a share; returning false stops the diagnosis. Called before each run of
-/// the model, many times per second.
+/// the model, many times per second, from any thread of the executor but never from two at once.
 using Observer = std::function<bool(const char* what, double share)>;
 
 /// @return the diagnosis, whatever its outcome; or
@@ -80,6 +82,7 @@ using Observer = std::function<bool(const char* what, double share)>;
 ///         not_found        an assumed effect is not in the catalogue, or cannot be
 ///         seen at this site;
 ///         not_finite, not_positive_definite from the fits; cancelled.
+/// @note   Pure: the same site, options and seed give the same bytes with any executor.
 [[nodiscard]] Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& options,
                                          const Observer& observer = {});
 

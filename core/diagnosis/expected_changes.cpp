@@ -53,36 +53,50 @@ void expect_changes(const SiteProblem& site, const SignatureReader& reader, cons
                     std::optional<int> since_day) {
   const SiteFacts facts = site.facts();
   const int days = site.drivers->hours.back().day_index + 1;
-  SpanReader spans(reader, fit.hours_kW);
+  /// A run with an effect in one shape.
+  struct Run {
+    std::size_t candidate;
+    std::vector<double> values;
+    Eigen::MatrixXd changes;  ///< Since the day, or up to the end of each block.
+  };
+  const auto is_alike = [&](std::size_t i, const Candidate& other) {
+    return other.effect == candidates[i].effect && other.meter == candidates[i].meter;
+  };
+  std::vector<Run> runs;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const auto is_alike = [&](const Candidate& other) {
-      return other.effect == candidates[i].effect && other.meter == candidates[i].meter;
-    };
     const auto begin = candidates.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::any_of(candidates.begin(), begin, is_alike)) continue;
+    if (std::any_of(candidates.begin(), begin,
+                    [&](const Candidate& other) { return is_alike(i, other); })) {
+      continue;
+    }
     for (const std::vector<double>& values : shapes_to_try(candidates[i])) {
-      if (predictor.is_stopped()) return;
-      const auto alteration = candidates[i].effect->bind(facts, values, candidates[i].meter);
-      predictor.parts_kW(fit.theta, alteration.get());
-      spans.take(predictor.hours_kW());
+      runs.push_back({i, values, {}});
+    }
+  }
+  predictor.for_each(runs.size(), [&](Predictor& own, std::size_t r) {
+    if (own.is_stopped()) return;
+    const Candidate& candidate = candidates[runs[r].candidate];
+    const auto alteration = candidate.effect->bind(facts, runs[r].values, candidate.meter);
+    own.parts_kW(fit.theta, alteration.get());
+    SpanReader spans(reader, fit.hours_kW);
+    spans.take(own.hours_kW());
+    runs[r].changes = since_day ? spans.change(*since_day, days) : changes_up_to(spans, days);
+  });
+  if (predictor.is_stopped()) return;
+  for (const Run& run : runs) {
+    const Eigen::MatrixXd& changes = run.changes;
+    for (std::size_t i = run.candidate; i < candidates.size(); ++i) {
+      if (!is_alike(run.candidate, candidates[i])) continue;
       if (since_day) {
-        const Eigen::MatrixXd change = spans.change(*since_day, days);
-        for (auto alike = begin; alike != candidates.end(); ++alike) {
-          if (!is_alike(*alike)) continue;
-          tell({&*alike, values, *since_day, days,
-                Eigen::Map<const Eigen::VectorXd>(change.data(), change.size())});
-        }
+        tell({&candidates[i], run.values, *since_day, days,
+              Eigen::Map<const Eigen::VectorXd>(changes.data(), changes.size())});
         continue;
       }
-      const Eigen::MatrixXd changes = changes_up_to(spans, days);
-      for (auto alike = begin; alike != candidates.end(); ++alike) {
-        if (!is_alike(*alike)) continue;
-        for (const Span& span : spans_of(*alike, days)) {
-          const Eigen::Index to =
-              span.to == days ? changes.cols() - 1 : Eigen::Index{span.to / kBlockDays};
-          tell({&*alike, values, span.from, span.to,
-                changes.col(to) - changes.col(span.from / kBlockDays)});
-        }
+      for (const Span& span : spans_of(candidates[i], days)) {
+        const Eigen::Index to =
+            span.to == days ? changes.cols() - 1 : Eigen::Index{span.to / kBlockDays};
+        tell({&candidates[i], run.values, span.from, span.to,
+              changes.col(to) - changes.col(span.from / kBlockDays)});
       }
     }
   }

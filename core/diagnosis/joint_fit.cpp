@@ -45,12 +45,7 @@ class ScoredModel {
   [[nodiscard]] std::vector<double> eta(const Eigen::VectorXd& own) const {
     return values_at(eta_priors_, own.tail(eta_count()));
   }
-  const Eigen::ArrayXXd& run(const Eigen::VectorXd& own) {
-    const std::vector<double> values = theta(own);
-    if (candidate_.effect == nullptr) return predictor_.parts_kW(values);
-    const auto alteration = alteration_of(candidate_, facts_, eta(own));
-    return predictor_.parts_kW(values, alteration.get());
-  }
+  const Eigen::ArrayXXd& run(const Eigen::VectorXd& own) { return run_by(predictor_, own); }
   Eigen::VectorXd stacked(const Eigen::VectorXd& own) {
     return context_.observations.stack(run(own));
   }
@@ -88,22 +83,29 @@ class ScoredModel {
   /// (n x (q + r)); columns of choices are zero.
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& own, const Eigen::VectorXd& here) {
     Eigen::MatrixXd columns(here.size(), count());
-    Eigen::VectorXd moved = own;
-    for (Eigen::Index j = 0; j < count(); ++j) {
-      if (j >= theta_count() && is_choice(j - theta_count())) {
-        columns.col(j).setZero();
-        continue;
-      }
-      // Towards the middle of the prior, so that the step stays plausible.
-      const double step = (own[j] > 0.0 ? -1.0 : 1.0) * step_of(j, own[j]);
-      moved[j] = own[j] + step;
-      columns.col(j) = (stacked(moved) - here) / step;
-      moved[j] = own[j];
-    }
+    predictor_.for_each(
+        static_cast<std::size_t>(count()), [&](Predictor& predictor, std::size_t index) {
+          const auto j = static_cast<Eigen::Index>(index);
+          if (j >= theta_count() && is_choice(j - theta_count())) {
+            columns.col(j).setZero();
+            return;
+          }
+          // Towards the middle of the prior, so that the step stays plausible.
+          const double step = (own[j] > 0.0 ? -1.0 : 1.0) * step_of(j, own[j]);
+          Eigen::VectorXd moved = own;
+          moved[j] = own[j] + step;
+          columns.col(j) = (context_.observations.stack(run_by(predictor, moved)) - here) / step;
+        });
     return columns;
   }
 
  private:
+  const Eigen::ArrayXXd& run_by(Predictor& predictor, const Eigen::VectorXd& own) const {
+    const std::vector<double> values = theta(own);
+    if (candidate_.effect == nullptr) return predictor.parts_kW(values);
+    const auto alteration = alteration_of(candidate_, facts_, eta(own));
+    return predictor.parts_kW(values, alteration.get());
+  }
   [[nodiscard]] const EffectParameter& parameter(Eigen::Index j) const {
     return candidate_.parameters[static_cast<std::size_t>(j)];
   }

@@ -165,10 +165,8 @@ class EvidenceSearch {
     looks_ = {look_from(drawings), look_from(mode_)};
     looks_[1].insert(looks_[0].begin(), looks_[0].end());  // what shows from there alone
     const std::array<SignaturePoint, 2> from{std::move(drawings), mode_};
-    for (const std::string_view effect : likeliest()) {
-      if (predictor_.is_stopped()) return {};
-      fit_effect(effect, from);
-    }
+    fit_effects(likeliest(), from);
+    if (predictor_.is_stopped()) return {};
     settle_leaders();
     look_for_better_base();
     return predictor_.is_stopped() ? SignatureEvidence{} : conclude();
@@ -222,18 +220,36 @@ class EvidenceSearch {
     return chosen;
   }
 
-  void fit_effect(std::string_view effect, const std::array<SignaturePoint, 2>& from) {
+  /// Calls `body` for each index below `count` with a search of its own, several at a time.
+  template <class Body>
+  void for_each(std::size_t count, const Body& body) {
+    predictor_.for_each(count, [&](Predictor& predictor, std::size_t i) {
+      SignatureSearch search = search_.with(predictor);
+      if (!predictor.is_stopped()) body(search, i);
+    });
+  }
+
+  void fit_effects(const std::vector<std::string_view>& effects,
+                   const std::array<SignaturePoint, 2>& from) {
+    fitted_.resize(effects.size());
+    for_each(effects.size(), [&](SignatureSearch& search, std::size_t i) {
+      fitted_[i] = fit_effect(search, effects[i], from);
+    });
+  }
+
+  [[nodiscard]] Fitted fit_effect(SignatureSearch& search, std::string_view effect,
+                                  const std::array<SignaturePoint, 2>& from) const {
     std::optional<Fitted> best;
     for (std::size_t i = 0; i < from.size(); ++i) {
       const auto found = looks_[i].find(effect);
       if (found == looks_[i].end()) continue;
       const ShapeLook& look = found->second;
-      Fitted fitted{effect, search_.with_effect(from[i], look.shape, look.factor, look.change),
+      Fitted fitted{effect, search.with_effect(from[i], look.shape, look.factor, look.change),
                     &look};
-      fitted.point = search_.improved(std::move(fitted.point), &look.shape);
+      fitted.point = search.improved(std::move(fitted.point), &look.shape);
       if (!best || fitted.cost() < best->cost()) best = std::move(fitted);
     }
-    fitted_.push_back(std::move(*best));
+    return std::move(*best);
   }
 
   /// Those that may still come first; new slopes cost as many runs as there are parameters.
@@ -242,10 +258,14 @@ class EvidenceSearch {
     constexpr double kOutOfReach = 15.0;
     std::ranges::sort(fitted_, {}, &Fitted::cost);
     const double best = fitted_.empty() ? 0.0 : fitted_.front().cost();
-    for (std::size_t i = 0; i < std::min(fitted_.size(), kLeaders); ++i) {
-      if (fitted_[i].cost() > best + kOutOfReach) break;
-      fitted_[i].point = search_.settled(std::move(fitted_[i].point), &fitted_[i].look->shape);
+    std::size_t leaders = 0;
+    while (leaders < std::min(fitted_.size(), kLeaders) &&
+           fitted_[leaders].cost() <= best + kOutOfReach) {
+      ++leaders;
     }
+    for_each(leaders, [&](SignatureSearch& search, std::size_t i) {
+      fitted_[i].point = search.settled(std::move(fitted_[i].point), &fitted_[i].look->shape);
+    });
   }
 
   /// A better place of the base model to which an effect has led is no evidence for the effect.
@@ -255,22 +275,25 @@ class EvidenceSearch {
     constexpr double kFarAhead = 8.0;
     constexpr double kFarBehind = 3.0;
     std::ranges::sort(fitted_, {}, [](const Fitted& f) { return f.point.cost; });
-    for (std::size_t i = 0; i < std::min(fitted_.size(), kLeaders); ++i) {
-      take_if_better(
-          search_.settled(search_.base_at(search_.scores_of(fitted_[i].point)), nullptr));
-    }
-    for (Fitted& fitted : fitted_) {
-      if (fitted.point.cost < mode_.cost - kFarAhead || predictor_.is_stopped()) continue;
-      const bool has_amount = fitted.point.at.size() > search_.parameters();
+    std::vector<SignaturePoint> bases(std::min(fitted_.size(), kLeaders));
+    for_each(bases.size(), [&](SignatureSearch& search, std::size_t i) {
+      bases[i] = search.settled(search.base_at(search.scores_of(fitted_[i].point)), nullptr);
+    });
+    if (predictor_.is_stopped()) return;
+    for (SignaturePoint& base : bases) take_if_better(std::move(base));
+    for_each(fitted_.size(), [&](SignatureSearch& search, std::size_t i) {
+      Fitted& fitted = fitted_[i];
+      if (fitted.point.cost < mode_.cost - kFarAhead) return;
+      const bool has_amount = fitted.point.at.size() > search.parameters();
       const double factor =
-          has_amount ? std::min(std::exp(fitted.point.at[search_.parameters()]), 1.0) : 1.0;
+          has_amount ? std::min(std::exp(fitted.point.at[search.parameters()]), 1.0) : 1.0;
       const EffectShape& shape = fitted.look->shape;
       SignaturePoint again =
-          search_.improved(search_.with_effect(mode_, shape, factor, fitted.look->change), &shape);
-      if (again.cost > fitted.point.cost + kFarBehind) continue;
-      again = search_.settled(std::move(again), &shape);
+          search.improved(search.with_effect(mode_, shape, factor, fitted.look->change), &shape);
+      if (again.cost > fitted.point.cost + kFarBehind) return;
+      again = search.settled(std::move(again), &shape);
       if (again.cost < fitted.point.cost) fitted.point = std::move(again);
-    }
+    });
   }
 
   [[nodiscard]] SignatureEvidence conclude() {

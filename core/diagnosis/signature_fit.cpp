@@ -32,16 +32,16 @@ class Fitter {
     linearise();
     for (int iteration = 0; iteration < kIterations && improve(); ++iteration) linearise();
     at(fit_.scores);
-    fit_.theta = theta_;
+    fit_.theta = values_at(priors_, fit_.scores);
     fit_.hours_kW = predictor_.hours_kW();
     return std::move(fit_);
   }
 
  private:
-  Eigen::VectorXd at(const Eigen::VectorXd& scores) {
-    theta_ = values_at(priors_, scores);
-    predictor_.parts_kW(theta_);
-    return flat(reader_.read(predictor_.hours_kW()));
+  Eigen::VectorXd at(const Eigen::VectorXd& scores) { return at(scores, predictor_); }
+  [[nodiscard]] Eigen::VectorXd at(const Eigen::VectorXd& scores, Predictor& predictor) const {
+    predictor.parts_kW(values_at(priors_, scores));
+    return flat(reader_.read(predictor.hours_kW()));
   }
 
   /// In standard deviations; 0 where the site has no such signature.
@@ -58,14 +58,16 @@ class Fitter {
   void linearise() {
     constexpr double kStep = 0.15;
     fit_.jacobian.resize(fit_.measured.size(), fit_.scores.size());
-    for (Eigen::Index j = 0; j < fit_.scores.size(); ++j) {
+    predictor_.for_each(priors_.size(), [&](Predictor& predictor, std::size_t index) {
+      const auto j = static_cast<Eigen::Index>(index);
       Eigen::VectorXd there = fit_.scores;
       const double step = there[j] > 0.0 ? -kStep : kStep;
       there[j] += step;
-      fit_.jacobian.col(j) = ((at(there) - fit_.fitted) / step).unaryExpr([](double slope) {
-        return std::isfinite(slope) ? slope : 0.0;
-      });
-    }
+      fit_.jacobian.col(j) =
+          ((at(there, predictor) - fit_.fitted) / step).unaryExpr([](double slope) {
+            return std::isfinite(slope) ? slope : 0.0;
+          });
+    });
   }
 
   /// One step, as long as it helps. @return whether any length did.
@@ -94,7 +96,6 @@ class Fitter {
   const SignatureReader& reader_;
   Predictor& predictor_;
   std::vector<Prior> priors_;
-  std::vector<double> theta_;
   SignatureFit fit_;
 };
 

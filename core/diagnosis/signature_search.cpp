@@ -32,7 +32,7 @@ SignatureSearch::SignatureSearch(const SiteProblem& site, const SignatureReader&
                                  Eigen::VectorXd measured, const Eigen::VectorXd& modelled)
     : facts_(site.facts()),
       reader_(reader),
-      predictor_(predictor),
+      predictor_(&predictor),
       priors_(priors_of(site)),
       measured_(std::move(measured)),
       metric_(null, measured_ + modelled),
@@ -45,19 +45,26 @@ SignatureSearch::SignatureSearch(const SiteProblem& site, const SignatureReader&
   }
 }
 
-Eigen::VectorXd SignatureSearch::modelled(const Eigen::VectorXd& at, const EffectShape* shape) {
+SignatureSearch SignatureSearch::with(Predictor& predictor) const {
+  SignatureSearch search = *this;
+  search.predictor_ = &predictor;
+  return search;
+}
+
+Eigen::VectorXd SignatureSearch::modelled_by(Predictor& predictor, const Eigen::VectorXd& at,
+                                             const EffectShape* shape) const {
   const Eigen::VectorXd scores = centre_ + at.head(parameters()).cwiseProduct(reach_);
   const std::vector<double> theta = values_at(priors_, scores);
   if (shape == nullptr) {
-    predictor_.parts_kW(theta);
+    predictor.parts_kW(theta);
   } else {
     const bool has_amount = at.size() > parameters();
     const std::vector<double> values =
         has_amount ? shape->with_factor(std::exp(at[parameters()])) : shape->values;
     const auto alteration = alteration_of(*shape->candidate, facts_, values);
-    predictor_.parts_kW(theta, alteration.get());
+    predictor.parts_kW(theta, alteration.get());
   }
-  const Eigen::MatrixXd read = reader_.read(predictor_.hours_kW());
+  const Eigen::MatrixXd read = reader_.read(predictor.hours_kW());
   return Eigen::Map<const Eigen::VectorXd>(read.data(), read.size());
 }
 
@@ -114,12 +121,13 @@ void SignatureSearch::linearise(SignaturePoint& point, const EffectShape* shape)
   constexpr double kStep = 0.15;  // Scores.
   const Eigen::VectorXd here = modelled(point.at, shape);
   Eigen::MatrixXd slopes(here.size(), parameters());
-  for (Eigen::Index j = 0; j < parameters(); ++j) {
+  predictor_->for_each(priors_.size(), [&](Predictor& predictor, std::size_t index) {
+    const auto j = static_cast<Eigen::Index>(index);
     Eigen::VectorXd there = point.at;
     const double step = (there[j] > 0.0 ? -kStep : kStep) / reach_[j];
     there[j] += step;
-    slopes.col(j) = (modelled(there, shape) - here) / step;
-  }
+    slopes.col(j) = (modelled_by(predictor, there, shape) - here) / step;
+  });
   point.slopes.conservativeResize(metric_.count(), point.at.size());
   point.slopes.leftCols(parameters()) = metric_.whiten(slopes);
 }
@@ -139,7 +147,7 @@ SignaturePoint SignatureSearch::improved(SignaturePoint point, const EffectShape
     Eigen::VectorXd step = normal.llt().solve(downhill).cwiseMin(kFarthest).cwiseMax(-kFarthest);
     double gained = 0.0;
     for (int trial = 0; trial < kTrials && gained <= 0.0; ++trial, step *= 0.4) {
-      if (predictor_.is_stopped()) return point;
+      if (predictor_->is_stopped()) return point;
       SignaturePoint there{.at = point.at + step};
       evaluate(there, shape);
       const Eigen::VectorXd unforeseen =
@@ -158,7 +166,7 @@ SignaturePoint SignatureSearch::improved(SignaturePoint point, const EffectShape
 SignaturePoint SignatureSearch::settled(SignaturePoint point, const EffectShape* shape) {
   constexpr int kRounds = 4;
   constexpr double kSmallGain = 0.5;
-  for (int round = 0; round < kRounds && !predictor_.is_stopped(); ++round) {
+  for (int round = 0; round < kRounds && !predictor_->is_stopped(); ++round) {
     linearise(point, shape);
     const double before = point.cost;
     point = improved(std::move(point), shape);

@@ -73,20 +73,26 @@ class SignatureSearch {
   [[nodiscard]] double log_ratio(double before, double after) const;
   /// Log of the log amount's posterior over its prior standard deviation; 0 without an amount.
   [[nodiscard]] double log_narrowing(const SignaturePoint& point) const;
+  /// The same search, asking another predictor of the same model.
+  [[nodiscard]] SignatureSearch with(Predictor& predictor) const;
   /// (entries) signatures of the model there.
-  [[nodiscard]] Eigen::VectorXd modelled(const Eigen::VectorXd& at, const EffectShape* shape);
+  [[nodiscard]] Eigen::VectorXd modelled(const Eigen::VectorXd& at, const EffectShape* shape) {
+    return modelled_by(*predictor_, at, shape);
+  }
   /// (entries) measured minus modelled; NaN where the site has no such signature.
   [[nodiscard]] Eigen::VectorXd left_at(const SignaturePoint& point, const EffectShape* shape) {
     return measured_ - modelled(point.at, shape);
   }
 
  private:
+  [[nodiscard]] Eigen::VectorXd modelled_by(Predictor& predictor, const Eigen::VectorXd& at,
+                                            const EffectShape* shape) const;
   void evaluate(SignaturePoint& point, const EffectShape* shape);
   [[nodiscard]] Eigen::VectorXd precision_of(const SignaturePoint& point) const;
 
   SiteFacts facts_;
   const SignatureReader& reader_;
-  Predictor& predictor_;
+  Predictor* predictor_;
   std::vector<Prior> priors_;
   Eigen::VectorXd measured_;
   SignatureMetric metric_;

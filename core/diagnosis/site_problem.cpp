@@ -233,7 +233,7 @@ void ProfileReading::apply(const model::Use& use, const Eigen::ArrayXXd& hours_k
 
 Predictor::Predictor(const SiteProblem& site,
                      std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted,
-                     std::function<bool()> proceed)
+                     std::function<bool()> proceed, ForEachIndex executor)
     : site_(&site),
       accepted_(std::move(accepted)),
       building_(site.nominal),
@@ -242,7 +242,8 @@ Predictor::Predictor(const SiteProblem& site,
       hours_kW_(Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(site.drivers->hours.size()),
                                       static_cast<Eigen::Index>(site.meters.size()))),
       parts_kW_(Eigen::ArrayXXd::Zero(site.day_parts.count(), hours_kW_.cols())),
-      proceed_(std::move(proceed)) {
+      proceed_(std::move(proceed)),
+      executor_(std::move(executor)) {
   for (const MeterData& meter : site.meters) maps_.push_back(meter.end_uses);
 }
 
@@ -263,6 +264,36 @@ const Eigen::ArrayXXd& Predictor::parts_kW(std::span<const double> theta,
   profile_.apply(building_.use, hours_kW_, parts_kW_);
   ++runs_;
   return parts_kW_;
+}
+
+void Predictor::for_each(std::size_t count,
+                         const std::function<void(Predictor&, std::size_t)>& body) {
+  if (!executor_ || count < 2) {
+    for (std::size_t i = 0; i < count; ++i) body(*this, i);
+    return;
+  }
+  const auto ask = [this] {
+    const std::scoped_lock lock{mutex_};
+    is_stopped_ = is_stopped_ || (proceed_ && !proceed_());
+    return !is_stopped_;
+  };
+  const auto take = [&] {
+    const std::scoped_lock lock{mutex_};
+    if (idle_.empty()) {
+      helpers_.push_back(std::make_unique<Predictor>(*site_, accepted_, ask));
+      idle_.push_back(helpers_.back().get());
+    }
+    Predictor* const helper = idle_.back();
+    idle_.pop_back();
+    return helper;
+  };
+  executor_(count, [&](std::size_t i) {
+    Predictor* const helper = take();
+    body(*helper, i);
+    const std::scoped_lock lock{mutex_};
+    runs_ += std::exchange(helper->runs_, 0);
+    idle_.push_back(helper);
+  });
 }
 
 Eigen::ArrayXXd Predictor::change_kW(std::span<const double> theta,

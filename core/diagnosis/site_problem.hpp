@@ -6,12 +6,14 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "core/diagnosis/day_parts.hpp"
 #include "core/diagnosis/effect.hpp"
 #include "core/display/unit.hpp"
+#include "core/executor.hpp"
 #include "core/model/end_use.hpp"
 #include "core/model/hourly/hourly.hpp"
 #include "core/model/parameter_library.hpp"
@@ -119,14 +121,24 @@ class ProfileReading {
   Cells plugs_kW_{};
 };
 
-/// Runs the hourly model for a site and reduces it to day parts. Use one instance per thread.
+/// Runs the hourly model for a site and reduces it to day parts. Use one instance per thread:
+/// `for_each` hands them out.
 class Predictor {
  public:
   /// @param accepted  Effects of the current model version: applied first, in every run.
-  /// @param proceed   Called before each run. Once it returns false, nothing more is run.
+  /// @param proceed   Called before each run, never from two threads at once. Once it returns
+  ///                  false, nothing more is run.
+  /// @param executor  Of `for_each`; empty: one after the other, in this thread.
   explicit Predictor(const SiteProblem& site,
                      std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted = {},
-                     std::function<bool()> proceed = {});
+                     std::function<bool()> proceed = {}, ForEachIndex executor = {});
+  Predictor(const Predictor&) = delete;
+  Predictor& operator=(const Predictor&) = delete;
+
+  /// Calls `body` for each index below `count` with a predictor of the same model for it alone,
+  /// several at a time. What it runs counts as run by this one. Bodies must not depend on each
+  /// other; a body that calls this again has it in its own thread.
+  void for_each(std::size_t count, const std::function<void(Predictor&, std::size_t)>& body);
 
   /// Whether it was told to stop; results since then are meaningless, and the caller must give up.
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
@@ -157,6 +169,10 @@ class Predictor {
   int runs_ = 0;
   std::function<bool()> proceed_;
   bool is_stopped_ = false;
+  ForEachIndex executor_;
+  std::mutex mutex_;  ///< Of the two below, and of `proceed_` while there are several.
+  std::vector<std::unique_ptr<Predictor>> helpers_;
+  std::vector<Predictor*> idle_;
 };
 
 /// The error to return when a predictor was stopped.

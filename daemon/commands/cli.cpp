@@ -558,6 +558,8 @@ void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
   diagnose->add_option("--out", given.diagnose.out, "Folder for diagnosis.json");
   diagnose->add_option("--seed", given.diagnose.seed, "Seed of all random numbers")
       ->capture_default_str();
+  diagnose->add_option("--threads", given.diagnose.threads,
+                       "Number of threads; 0 for one per core");
   diagnose->add_flag("--apply", given.diagnose.apply, "Add the effect that is named to the model");
   diagnose->add_option("--assume", given.diagnose.assumed,
                        "Add only this effect, EFFECT or EFFECT:METER, which is known to be there");

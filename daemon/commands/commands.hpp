@@ -102,6 +102,7 @@ struct EngineArguments : SiteArguments {};
 struct DiagnoseArguments : SiteArguments {
   std::filesystem::path out;
   std::uint64_t seed = 1;
+  unsigned threads = 0;              ///< 0: one per core.
   bool apply = false;                ///< Put what was named in force.
   std::vector<std::string> assumed;  ///< Effects known to be there, "scale_fault:steam".
 };

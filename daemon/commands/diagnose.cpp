@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "adapters/models/model_store.hpp"
+#include "adapters/system/parallel_for.hpp"
 #include "adapters/system/write_file.hpp"
 #include "core/diagnosis/effect.hpp"
 #include "core/display/warning.hpp"
@@ -80,7 +81,8 @@ Result<SiteDiagnosis> diagnose_aloud(const ModelledSite& modelled,
                        {.rules = {},
                         .prior_none = modelled.site.config.prior_none,
                         .seed = arguments.seed,
-                        .assumed = arguments.assumed},
+                        .assumed = arguments.assumed,
+                        .executor = system::parallel_for(arguments.threads)},
                        observer);
 }
 

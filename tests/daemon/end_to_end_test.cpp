@@ -58,14 +58,22 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Three years of seed 7, faults and all.
+/// Three years of seed 7, faults and all: made once, and copied for each test.
 class EndToEnd : public ::testing::Test {
  protected:
-  void SetUp() override {
+  static void SetUpTestSuite() {
+    feed_ = new recald::testing::TemporaryFolder;
     const auto written =
-        simulators::write_building_feed({.out = folder_.path(), .scenario = {}, .seed = 7});
+        simulators::write_building_feed({.out = feed_->path(), .scenario = {}, .seed = 7});
     ASSERT_TRUE(written.has_value()) << written.error().message;
   }
+  static void TearDownTestSuite() {
+    delete feed_;
+    delete calibrated_;
+    feed_ = nullptr;
+    calibrated_ = nullptr;
+  }
+  void SetUp() override { fs::copy(feed_->path(), folder_.path(), fs::copy_options::recursive); }
 
   [[nodiscard]] std::string path(std::string_view name) const { return (folder_ / name).string(); }
 
@@ -84,8 +92,18 @@ class EndToEnd : public ::testing::Test {
     return run(arguments);
   }
 
+  /// The building's calibration as it comes.
+  const Outcome& calibrated() {
+    if (calibrated_ == nullptr) calibrated_ = new Outcome{calibrate("out", {"--json"})};
+    return *calibrated_;
+  }
+
   recald::testing::TemporaryFolder folder_;
+  static recald::testing::TemporaryFolder* feed_;
+  static Outcome* calibrated_;
 };
+recald::testing::TemporaryFolder* EndToEnd::feed_ = nullptr;
+Outcome* EndToEnd::calibrated_ = nullptr;
 
 TEST_F(EndToEnd, MonthsAreThoseOfTheBuilding) {
   const Outcome outcome = run({"replay", path("site.toml"), "--out", path("replayed")});
@@ -242,7 +260,7 @@ TEST_F(EndToEnd, AFailedCalibrationDoesNotReplaceAGoodOne) {
 // the air that is cooled most of all: most of what the monthly model's own errors leave to be
 // known.
 TEST_F(EndToEnd, CalibrationLearnsTheOutdoorAir) {
-  const Outcome outcome = calibrate("out", {"--json"});
+  const Outcome& outcome = calibrated();
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   const Json json = Json::parse(outcome.out);
   const Json& airflow = json["parameters"][1];
@@ -264,7 +282,7 @@ TEST_F(EndToEnd, TheSeedsDiscrepancyIsOneOptionAway) {
 // The forecast knows what the calibration months said of the model's error; the model alone does
 // not.
 TEST_F(EndToEnd, ForecastsOfUnseenMonthsAreBetterThanTheModelAlone) {
-  const Outcome outcome = calibrate("out", {"--json"});
+  const Outcome& outcome = calibrated();
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   const Json json = Json::parse(outcome.out);
   const Json& forecast = json["forecast"]["validation"]["chilled_water_daily_kWh"];

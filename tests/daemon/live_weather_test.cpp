@@ -15,6 +15,7 @@
 #include "tests/daemon/command_line.hpp"
 #include "tests/daemon/depot_year.hpp"
 #include "tests/daemon/gateway/weather_station.hpp"
+#include "tests/daemon/short_chains.hpp"
 #include "tests/support/virtual_worker.hpp"
 
 namespace recald::daemon::live_weather_test {
@@ -92,7 +93,8 @@ class LiveWeather : public ::testing::Test {
   /// What a calibration gives on the latest closed months.
   Json calibrated(Instant now = kNow) {
     JobWatch watch;
-    const auto outcome = make_site_work(share({site_, calendar_}))({}, now, watch);
+    const auto outcome =
+        make_site_work(share({site_, calendar_}), testing::short_chains())({}, now, watch);
     EXPECT_TRUE(outcome.has_value()) << outcome.error().message;
     EXPECT_FALSE(outcome->failed) << outcome->message;
     said_ = outcome->message;
@@ -219,7 +221,8 @@ class Sent : public LiveWeather {
     rig_.emplace(*store_, loop_, kNow);
     rig_->begin(site_);
     jobs_.emplace(JobRunner::Ports{loop_, *store_, worker_},
-                  make_site_work(share({site_, calendar_})), [this](const StoredJob& job) {
+                  make_site_work(share({site_, calendar_}), testing::short_chains()),
+                  [this](const StoredJob& job) {
                     if (job.ended) ended_.push_back(job);
                   });
     wait_.emplace(WeatherWait::Ports{loop_, *store_, looker_},

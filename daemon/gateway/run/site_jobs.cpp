@@ -183,8 +183,8 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
   return summary_of(*drift);
 }
 
-Result<JobOutcome> calibrate(const OpenSite& site, const StoredJob& job, metering::Instant now,
-                             JobWatch& watch) {
+Result<JobOutcome> calibrate(const OpenSite& site, const CalibrateOptions& options,
+                             const StoredJob& job, metering::Instant now, JobWatch& watch) {
   const auto folder = job_folder(site.config.store, job.kind, job.number);
   auto modelled = load_modelled_site(on_latest_months(site), now);
   if (!modelled) return tl::unexpected(modelled.error());
@@ -195,7 +195,7 @@ Result<JobOutcome> calibrate(const OpenSite& site, const StoredJob& job, meterin
   if (const auto& design = modelled->site.config.recalibration.design; !design.empty()) {
     return calibrate_metamodel(*modelled, design, folder, now, context);
   }
-  const auto done = finish_calibration(std::move(*modelled), {}, context);
+  const auto done = finish_calibration(std::move(*modelled), options, context);
   if (!done) return tl::unexpected(done.error());
   JobOutcome outcome =
       outcome_of(done->calibration, done->modelled.facts, done->modelled.site.config, folder);
@@ -318,14 +318,14 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
 
 }  // namespace
 
-DoJob make_site_work(SharedSite site) {
-  return [site = std::move(site)](const StoredJob& job, metering::Instant now,
-                                  JobWatch& watch) -> Result<JobOutcome> {
+DoJob make_site_work(SharedSite site, const CalibrateOptions& options) {
+  return [site = std::move(site), options](const StoredJob& job, metering::Instant now,
+                                           JobWatch& watch) -> Result<JobOutcome> {
     if (auto modelled = require_model(site->config); !modelled) {
       return tl::unexpected(modelled.error());
     }
     if (job.kind == JobKind::diagnosis) return diagnose(on_latest_months(*site), job, now, watch);
-    auto outcome = calibrate(*site, job, now, watch);
+    auto outcome = calibrate(*site, options, job, now, watch);
     return outcome ? outcome : with_known_weather(outcome.error(), site, now);
   };
 }

@@ -4,6 +4,7 @@
 
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/gateway/run/weather_wait.hpp"
+#include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 
 namespace recald::daemon {
@@ -13,7 +14,8 @@ namespace recald::daemon {
 ///
 /// A calibration says which months' weather it lacked; a failed one does too, since the weather
 /// may be the reason.
-[[nodiscard]] DoJob make_site_work(SharedSite site);
+/// @param options  Of calibrations of the site's own model.
+[[nodiscard]] DoJob make_site_work(SharedSite site, const CalibrateOptions& options = {});
 
 /// Reads what the site's weather file and sensors have now, in the same way.
 [[nodiscard]] LookAtWeather make_weather_look(SharedSite site);

@@ -7,9 +7,9 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "tests/core/calibration/toy_models.hpp"
+#include "tests/support/in_threads.hpp"
 
 namespace recald::calibration::calibration_test {
 namespace {
@@ -24,12 +24,6 @@ CalibrationOptions short_options(int iterations = 4000, int burn_in = 1000) {
   options.sampling.burn_in = burn_in;
   options.sampling.doublings_max = 0;
   return options;
-}
-
-void for_each_index_in_threads(std::size_t count, const std::function<void(std::size_t)>& body) {
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < count; ++i) threads.emplace_back([&body, i] { body(i); });
-  for (auto& thread : threads) thread.join();
 }
 
 bool has(const Findings& findings, FindingKind kind, const std::string& subject) {
@@ -79,7 +73,7 @@ TEST(Calibrate, ThreadsDoNotChangeTheBytes) {
         .value();
   };
   const Calibration serial = run(for_each_index_serially, 5);
-  const Calibration threaded = run(for_each_index_in_threads, 5);
+  const Calibration threaded = run(recald::testing::in_threads, 5);
   const Calibration other = run(for_each_index_serially, 6);
   EXPECT_TRUE(serial.design.theta == threaded.design.theta);
   EXPECT_TRUE(serial.design.outputs == threaded.design.outputs);

@@ -7,8 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <thread>
 #include <vector>
+
+#include "tests/support/in_threads.hpp"
 
 namespace recald::design::model_runs_test {
 namespace {
@@ -44,16 +45,10 @@ Eigen::MatrixXd rows(int count) {
   return theta;
 }
 
-void in_threads(std::size_t count, const std::function<void(std::size_t)>& body) {
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < count; ++i) threads.emplace_back([&body, i] { body(i); });
-  for (auto& thread : threads) thread.join();
-}
-
 TEST(ModelRuns, EachRowIsTheModelThere) {
   for (const int count : {0, 1, 5, 100}) {
     for (const ForEachIndex& executor :
-         {ForEachIndex(for_each_index_serially), ForEachIndex(in_threads)}) {
+         {ForEachIndex(for_each_index_serially), ForEachIndex(recald::testing::in_threads)}) {
       const auto outputs = run_model(StepModel(1e9), parameters(), rows(count), executor);
       ASSERT_TRUE(outputs.has_value());
       ASSERT_EQ(outputs->rows(), count);

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "tests/support/in_threads.hpp"
 #include "tests/support/sample_problem.hpp"
 
 namespace recald::diagnosis::diagnose_test {
@@ -35,6 +36,17 @@ SiteProblem site_with(const Effect* hidden, const std::vector<double>& values, i
   return site;
 }
 
+/// A year and a half of the sample building, which runs at weekends; looked into once for all
+/// tests.
+const SiteProblem& running_at_weekends() {
+  static const SiteProblem site = site_with(find_effect("weekend_operation"), {0.8, 0.8}, 18);
+  return site;
+}
+const Result<Diagnosis>& what_runs_at_weekends() {
+  static const Result<Diagnosis> diagnosis = diagnose(running_at_weekends(), {});
+  return diagnosis;
+}
+
 // Between two questions lies one run of the model, whatever the search is at.
 TEST(Diagnose, EndsAtTheRunAtWhichItIsToldTo) {
   const SiteProblem site = site_with(nullptr, {}, 12);
@@ -59,8 +71,7 @@ TEST(Diagnose, NamesNothingWhereNothingIsHidden) {
 }
 
 TEST(Diagnose, NamesAHiddenEffectAndShowsThatTheGapShrank) {
-  const SiteProblem site = site_with(find_effect("weekend_operation"), {0.8, 0.8});
-  const auto diagnosis = diagnose(site, {});
+  const auto& diagnosis = what_runs_at_weekends();
   ASSERT_TRUE(diagnosis.has_value()) << diagnosis.error().message;
   const Naming& naming = diagnosis->passes.front().naming;
   ASSERT_EQ(diagnosis->outcome, Outcome::named)
@@ -77,8 +88,7 @@ TEST(Diagnose, NamesAHiddenEffectAndShowsThatTheGapShrank) {
 }
 
 TEST(Diagnose, ProbabilitiesAreThoseOfTheSignatures) {
-  const SiteProblem site = site_with(find_effect("weekend_operation"), {0.8, 0.8}, 18);
-  const auto diagnosis = diagnose(site, {});
+  const auto& diagnosis = what_runs_at_weekends();
   ASSERT_TRUE(diagnosis.has_value()) << diagnosis.error().message;
   const Naming& naming = diagnosis->passes.front().naming;
   double sum = 0.0;
@@ -98,15 +108,20 @@ TEST(Diagnose, ProbabilitiesAreThoseOfTheSignatures) {
   }));
 }
 
-TEST(Diagnose, SameInputsGiveTheSameResult) {
-  const SiteProblem site = site_with(find_effect("weekend_operation"), {0.8, 0.8}, 18);
-  const auto first = diagnose(site, {});
-  const auto second = diagnose(site, {});
+TEST(Diagnose, SameInputsGiveTheSameResultOnAnyThreads) {
+  const auto& first = what_runs_at_weekends();
+  int asked = 0;
+  const auto second = diagnose(running_at_weekends(), {.executor = recald::testing::in_threads},
+                               [&](const char*, double) { return ++asked > 0; });
   ASSERT_TRUE(first.has_value());
   ASSERT_TRUE(second.has_value());
   ASSERT_GE(first->added.size(), 1u) << first->why;
   ASSERT_EQ(first->added.size(), second->added.size());
   EXPECT_EQ(first->added[0].draws, second->added[0].draws);
+  EXPECT_EQ(first->passes.front().naming.probabilities.front().probability,
+            second->passes.front().naming.probabilities.front().probability);
+  EXPECT_EQ(first->model_runs, second->model_runs);
+  EXPECT_GE(asked, second->model_runs);
 }
 
 TEST(Diagnose, StopsWhenAsked) {
@@ -114,6 +129,12 @@ TEST(Diagnose, StopsWhenAsked) {
       diagnose(site_with(nullptr, {}), {}, [](const char*, double share) { return share < 0.1; });
   ASSERT_FALSE(stopped.has_value());
   EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
+  // In the middle of runs side by side, too: it looks for effects then.
+  const auto in_search =
+      diagnose(running_at_weekends(), {.executor = recald::testing::in_threads},
+               [asked = 0](const char*, double) mutable { return ++asked < 300; });
+  ASSERT_FALSE(in_search.has_value());
+  EXPECT_EQ(in_search.error().code, ErrorCode::cancelled);
 }
 
 TEST(Diagnose, AMeterWithHardlyAnyReadingsIsExplained) {
