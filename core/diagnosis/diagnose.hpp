@@ -25,7 +25,7 @@ struct DiagnoseOptions {
   /// added in this order and kept, whatever their probability and the held-out scores.
   /// Nothing else is added.
   std::vector<std::string> assumed = {};
-  ForEachIndex executor = {};  ///< Runs of the model side by side; empty: in this thread.
+  ForEachIndex executor = for_each_index_serially;  ///< Of runs of the model, and of noises.
 };
 
 /// One added effect, as found when it was added.

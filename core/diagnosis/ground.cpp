@@ -173,7 +173,7 @@ void draw_errors(Predictor& predictor, const SiteProblem& site, Ground& ground) 
 
 /// Noise of the residuals at the current mode, for the search and for scoring.
 /// @param last  Start near the known levels, and use a whole grid.
-Result<void> learn_noise(Ground& ground, bool last) {
+Result<void> learn_noise(Ground& ground, bool last, const ForEachIndex& executor) {
   const Eigen::VectorXd gap = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
   ground.search = search_noise(ground.fit, gap);
   const Eigen::VectorXd left = gap - ground.errors * ground.none.scores.tail(ground.errors.cols());
@@ -181,7 +181,7 @@ Result<void> learn_noise(Ground& ground, bool last) {
   if (!levels) return tl::unexpected(levels.error());
   ground.levels = std::move(*levels);
   set_gates(ground.fit, left, ground.levels);
-  ground.grid = noise_grid(ground.fit, ground.levels, last);
+  ground.grid = noise_grid(ground.fit, ground.levels, last, executor);
   ground.reference_node = ground.grid.size() / 2;
   return {};
 }
@@ -205,7 +205,7 @@ void keep_likely_nodes(Ground& ground) {
 /// Usual errors, noise and mode once each, in this order.
 Result<void> learn(Predictor& predictor, const SiteProblem& site, bool last, Ground& ground) {
   draw_errors(predictor, site, ground);
-  if (auto learnt = learn_noise(ground, last); !learnt) return learnt;
+  if (auto learnt = learn_noise(ground, last, predictor.executor()); !learnt) return learnt;
   auto none = fit_jointly(predictor, ground.context(site), Candidate{}, ground.none.scores,
                           last ? kFine : kRough);
   if (!none) return tl::unexpected(none.error());

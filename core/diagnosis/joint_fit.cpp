@@ -256,18 +256,21 @@ struct GridEvidence {
 Result<GridEvidence> evidence_over(const std::vector<NoiseNode>& grid,
                                    const Observations& observations,
                                    const Eigen::VectorXd& linear_residual,
-                                   const Eigen::MatrixXd& jacobian) {
+                                   const Eigen::MatrixXd& jacobian, const ForEachIndex& executor) {
   const Eigen::MatrixXd columns = beside(linear_residual, jacobian);
   const auto nodes = static_cast<Eigen::Index>(grid.size());
+  std::vector<Result<double>> found(grid.size());
+  executor(grid.size(), [&](std::size_t i) {
+    found[i] = marginalise(grid[i].gram(observations, columns), unit_precision(jacobian.cols()))
+                   .map([](const auto& reduced) { return log_evidence(reduced); });
+  });
   Eigen::VectorXd evidences(nodes);
   Eigen::VectorXd weights(nodes);
   for (Eigen::Index i = 0; i < nodes; ++i) {
-    const NoiseNode& node = grid[static_cast<std::size_t>(i)];
-    const auto reduced =
-        marginalise(node.gram(observations, columns), unit_precision(jacobian.cols()));
-    if (!reduced) return tl::unexpected(reduced.error());
-    evidences[i] = log_evidence(*reduced);
-    weights[i] = node.log_weight;
+    const auto& evidence = found[static_cast<std::size_t>(i)];
+    if (!evidence) return tl::unexpected(evidence.error());
+    evidences[i] = *evidence;
+    weights[i] = grid[static_cast<std::size_t>(i)].log_weight;
   }
   GridEvidence result{combine_nodes(evidences, weights), node_weights(evidences, weights), 0};
   result.node_weights.maxCoeff(&result.best_node);
@@ -355,8 +358,8 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
   fit.jacobian.resize(observations.count(), q + k + r);
   fit.jacobian << place.jacobian.leftCols(q), context.errors, place.jacobian.rightCols(r);
   fit.parts_kW = model.run(place.own);
-  const auto evidence =
-      evidence_over(context.grid, observations, fit.linear_residual(), fit.jacobian);
+  const auto evidence = evidence_over(context.grid, observations, fit.linear_residual(),
+                                      fit.jacobian, predictor.executor());
   if (!evidence) return tl::unexpected(evidence.error());
   fit.log_evidence = evidence->log_evidence - model.log_choices();
   fit.node_weights = evidence->node_weights;

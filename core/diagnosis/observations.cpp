@@ -266,7 +266,8 @@ Eigen::VectorXd NoiseNode::squared_norms(const Observations& observations,
 }
 
 std::vector<NoiseNode> noise_grid(const Observations& observations,
-                                  std::span<const NoiseLevel> levels, bool whole) {
+                                  std::span<const NoiseLevel> levels, bool whole,
+                                  const ForEachIndex& executor) {
   constexpr std::array<double, 3> kStructure{0.6, 1.0, 1.7};
   constexpr std::array<double, 3> kCorrelation{0.4, 1.0, 2.5};
   constexpr std::array<double, 3> kWhite{0.8, 1.0, 1.25};
@@ -275,28 +276,22 @@ std::vector<NoiseNode> noise_grid(const Observations& observations,
   const auto& structure = whole ? kStructure : kMiddle;
   const auto& correlation = whole ? kCorrelation : kMiddle;
   const auto& white = whole ? kWhite : kMiddle;
-  std::vector<NoiseNode> grid;
-  const double log_weight = -std::log(static_cast<double>(n * n * n));
+  const std::size_t nodes = n * n * n;
+  std::vector<NoiseNode> grid(nodes, {{}, -std::log(static_cast<double>(nodes))});
   std::vector<SparsePatterns> patterns;
   for (const MeterRows& meter : observations.meters) {
     patterns.push_back(sparse_patterns(meter.design));
   }
-  for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t b = 0; b < n; ++b) {
-      for (std::size_t c = 0; c < n; ++c) {
-        NoiseNode node{{}, log_weight};
-        for (std::size_t g = 0; g < observations.meters.size(); ++g) {
-          if (observations.meters[g].rows.empty()) continue;
-          NoiseLevel level = levels[g];
-          level.structure_sd *= structure[a];
-          level.correlation_h *= correlation[b];
-          level.white_sd *= white[c];
-          node.meters.emplace_back(observations.meters[g].design, level, patterns[g]);
-        }
-        grid.push_back(std::move(node));
-      }
+  executor(nodes, [&](std::size_t i) {
+    for (std::size_t g = 0; g < observations.meters.size(); ++g) {
+      if (observations.meters[g].rows.empty()) continue;
+      NoiseLevel level = levels[g];
+      level.structure_sd *= structure[i / (n * n)];
+      level.correlation_h *= correlation[i / n % n];
+      level.white_sd *= white[i % n];
+      grid[i].meters.emplace_back(observations.meters[g].design, level, patterns[g]);
     }
-  }
+  });
   return grid;
 }
 

@@ -77,7 +77,8 @@ struct NoiseNode {
 /// Common factors on structure_sd, correlation_h and white_sd: 3 x 3 x 3 nodes around the fitted
 /// levels, or only the middle one. A single noise level, learnt without an effect, would contain
 /// the effect and hide it.
-[[nodiscard]] std::vector<NoiseNode> noise_grid(const Observations& observations,
-                                                std::span<const NoiseLevel> levels, bool whole);
+[[nodiscard]] std::vector<NoiseNode> noise_grid(
+    const Observations& observations, std::span<const NoiseLevel> levels, bool whole,
+    const ForEachIndex& executor = for_each_index_serially);
 
 }  // namespace recald::diagnosis

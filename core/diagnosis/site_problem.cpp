@@ -268,10 +268,6 @@ const Eigen::ArrayXXd& Predictor::parts_kW(std::span<const double> theta,
 
 void Predictor::for_each(std::size_t count,
                          const std::function<void(Predictor&, std::size_t)>& body) {
-  if (!executor_ || count < 2) {
-    for (std::size_t i = 0; i < count; ++i) body(*this, i);
-    return;
-  }
   const auto ask = [this] {
     const std::scoped_lock lock{mutex_};
     is_stopped_ = is_stopped_ || (proceed_ && !proceed_());

@@ -128,17 +128,20 @@ class Predictor {
   /// @param accepted  Effects of the current model version: applied first, in every run.
   /// @param proceed   Called before each run, never from two threads at once. Once it returns
   ///                  false, nothing more is run.
-  /// @param executor  Of `for_each`; empty: one after the other, in this thread.
+  /// @param executor  Of `for_each`.
   explicit Predictor(const SiteProblem& site,
                      std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted = {},
-                     std::function<bool()> proceed = {}, ForEachIndex executor = {});
+                     std::function<bool()> proceed = {},
+                     ForEachIndex executor = for_each_index_serially);
   Predictor(const Predictor&) = delete;
   Predictor& operator=(const Predictor&) = delete;
 
   /// Calls `body` for each index below `count` with a predictor of the same model for it alone,
-  /// several at a time. What it runs counts as run by this one. Bodies must not depend on each
-  /// other; a body that calls this again has it in its own thread.
+  /// as the executor has it. What it runs counts as run by this one. Bodies must not depend on
+  /// each other; those of a body run in its own thread.
   void for_each(std::size_t count, const std::function<void(Predictor&, std::size_t)>& body);
+  /// For what needs no predictor.
+  [[nodiscard]] const ForEachIndex& executor() const { return executor_; }
 
   /// Whether it was told to stop; results since then are meaningless, and the caller must give up.
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
