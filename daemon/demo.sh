@@ -101,7 +101,7 @@ outcome=$(said 's/^Outcome: \([^.]*\)[.].*/\1/p')
 found=$(said 's/^Outcome: [^.]*[.] *Missing from the model: "\(.*\)"[.]$/\1/p')
 if [ -n "$found" ]; then
   months=$(said 's/^Scatter of days .* in the \([0-9]*\) held-out months: .*/\1/p')
-  sure="$(said 's/^ *\([0-9.]* %\)  .*/\1/p')${months:+, confirmed on $months months that nothing was fitted to}"
+  sure="$(said 's/^ *\([0-9.]* %\)  .*/\1/p')${months:+, confirmed on $months months kept out of every fit}"
 else
   found="no single effect ($outcome)"
   sure=$(sed -n '/^Explanations:/,/^[^ E]/s/^ *\([0-9.]* %\)  \(.*\)/\2 \1/p' "$dir/diagnose.txt" | head -n 3 | paste -sd, | sed 's/,/, /g')
@@ -110,10 +110,10 @@ error=$(said 's/^Scatter of days [^:]*: \(.*\)[.]$/\1/p' | sed 's/ % before, / â
 cost=$(said 's/.* It makes about \(.*\)[.] It costs about \(.*\)[.]$/\2, from \1/p' | sed 's/ a month more at / of /g; s/$/ a month/')
 
 echo
-echo "Hidden        $hidden"
+echo "Hidden        $hidden (in the simulated building; recald is not told)"
 echo "Found         $found"
 echo "How sure      $sure"
-echo "Daily error   ${error:-not lowered: nothing was added to the model}"
+echo "Daily error   ${error:+CV(RMSE) on those months: }${error:-not lowered: nothing was added to the model}"
 echo "Cost          ${cost:-none is known}"
 echo
 echo "Pages         $dir/diagnosis.html"

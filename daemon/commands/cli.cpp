@@ -383,8 +383,9 @@ void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
                    }});
 
   CLI::App* doctor =
-      app.add_subcommand("doctor",
-                         "Say what a report of a bug needs, and what is wrong, without secrets")
+      app.add_subcommand(
+             "doctor",
+             "Check the installation, and collect what a bug report needs, without secrets")
           ->group(kRun);
   doctor->add_option("site", given.doctor.site, "Site file (TOML); the machine alone without one");
   doctor->add_flag("--json", given.doctor.json, "Print the result as one JSON object");
