@@ -8,8 +8,8 @@
 #include "adapters/system/machine.hpp"
 #include "adapters/system/time_zone_release.hpp"
 #include "adapters/versions/library_versions.hpp"
-#include "daemon/commands/facts.hpp"
 #include "daemon/commands/commit.hpp"
+#include "daemon/commands/facts.hpp"
 #include "daemon/version.hpp"
 
 namespace recald::daemon {
