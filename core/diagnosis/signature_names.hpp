@@ -22,9 +22,9 @@ inline constexpr Eigen::Index kSiteFeatures = 3;
 [[nodiscard]] Eigen::VectorXd site_features(const SignatureEvidence& evidence);
 
 struct NameWeights {
-  Eigen::Vector<double, kEffectFeatures> effect;
-  Eigen::Vector<double, kSiteFeatures> none;
-  Eigen::Vector<double, kSiteFeatures> unknown;
+  Eigen::Vector<double, kEffectFeatures> effect = Eigen::Vector<double, kEffectFeatures>::Zero();
+  Eigen::Vector<double, kSiteFeatures> none = Eigen::Vector<double, kSiteFeatures>::Zero();
+  Eigen::Vector<double, kSiteFeatures> unknown = Eigen::Vector<double, kSiteFeatures>::Zero();
 };
 
 /// Weights are learnt where nothing is hidden in half of the buildings.
@@ -38,9 +38,8 @@ struct SignatureNames {
   double prior_none = kEvenPrior;
 };
 
-/// @param prior_none  Probability before any reading that nothing is missing from the model; above
-/// 0
-///                    and below 1.
+/// @param prior_none  Probability before any reading that nothing is missing from the model;
+///                    above 0 and below 1.
 /// @return none for sure where the site has no signatures.
 [[nodiscard]] SignatureNames names_by(SignatureEvidence evidence, const NameWeights& weights,
                                       double prior_none = kEvenPrior);
