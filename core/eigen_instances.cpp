@@ -1,0 +1,3 @@
+#include "core/eigen_instances.hpp"
+
+RECALD_EIGEN_INSTANCES()
