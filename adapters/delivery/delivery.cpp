@@ -1,6 +1,5 @@
 #include "adapters/delivery/delivery.hpp"
 
-#include <curl/curl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,26 +7,20 @@
 #include <memory>
 #include <string_view>
 
+#include "adapters/curl/transfer.hpp"
+
 namespace recald::delivery {
 namespace {
 
-constexpr long kConnect_ms = 10'000;
-constexpr long kWhole_ms = 30'000;
-constexpr std::size_t kAnswerBytes = 500;
+using curl::add;
+using curl::Handle;
+using curl::List;
 
-struct Close {
-  void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
-  void operator()(CURLU* url) const { curl_url_cleanup(url); }
-  void operator()(curl_slist* list) const { curl_slist_free_all(list); }
-};
-using Handle = std::unique_ptr<CURL, Close>;
-using List = std::unique_ptr<curl_slist, Close>;
+constexpr std::size_t kAnswerBytes = 500;
 
 int ask_whether_to_stop(void* stop, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
   return static_cast<const std::stop_token*>(stop)->stop_requested() ? 1 : 0;
 }
-
-std::size_t drop(char*, std::size_t, std::size_t count, void*) { return count; }
 
 std::size_t keep_beginning(char* bytes, std::size_t, std::size_t count, void* kept) {
   auto& text = *static_cast<std::string*>(kept);
@@ -43,26 +36,12 @@ std::size_t read_rest(char* to, std::size_t size, std::size_t count, void* rest)
   return taken;
 }
 
-void add(List& list, const std::string& line) {
-  if (curl_slist* longer = curl_slist_append(list.get(), line.c_str())) {
-    (void)list.release();
-    list.reset(longer);
-  }
-}
-
 /// What both kinds have in common.
 Handle begin(const std::string& url, const char* protocols,
              const std::filesystem::path& trusted_certificate, const std::stop_token& stop) {
-  static const CURLcode initialised = curl_global_init(CURL_GLOBAL_DEFAULT);
-  Handle handle{initialised == CURLE_OK ? curl_easy_init() : nullptr};
+  Handle handle = curl::open_transfer(
+      url, {.protocols = protocols, .trusted_certificate = trusted_certificate});
   if (!handle) return handle;
-  curl_easy_setopt(handle.get(), CURLOPT_URL, url.c_str());
-  curl_easy_setopt(handle.get(), CURLOPT_PROTOCOLS_STR, protocols);
-  curl_easy_setopt(handle.get(), CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(handle.get(), CURLOPT_QUICK_EXIT, 1L);  // does not wait for a name server
-  curl_easy_setopt(handle.get(), CURLOPT_CONNECTTIMEOUT_MS, kConnect_ms);
-  curl_easy_setopt(handle.get(), CURLOPT_TIMEOUT_MS, kWhole_ms);
-  curl_easy_setopt(handle.get(), CURLOPT_WRITEFUNCTION, drop);
   curl_easy_setopt(handle.get(), CURLOPT_NOPROGRESS, 0L);
   curl_easy_setopt(handle.get(), CURLOPT_XFERINFOFUNCTION, ask_whether_to_stop);
   curl_easy_setopt(handle.get(), CURLOPT_XFERINFODATA, &stop);
@@ -70,24 +49,17 @@ Handle begin(const std::string& url, const char* protocols,
   const std::string host = host_of(url);
   const bool is_this_machine = host == "localhost" || host == "[::1]" || host.starts_with("127.");
   if (is_this_machine) curl_easy_setopt(handle.get(), CURLOPT_NOPROXY, "*");
-  if (!trusted_certificate.empty()) {
-    curl_easy_setopt(handle.get(), CURLOPT_CAINFO, trusted_certificate.c_str());
-    curl_easy_setopt(handle.get(), CURLOPT_CAPATH, nullptr);
-  }
   return handle;
 }
 
-Result<void> perform(const Handle& handle, const std::string& url) {
-  std::string why(CURL_ERROR_SIZE, '\0');
-  curl_easy_setopt(handle.get(), CURLOPT_ERRORBUFFER, why.data());
-  const CURLcode code = curl_easy_perform(handle.get());
-  if (code == CURLE_OK) return {};
-  if (code == CURLE_ABORTED_BY_CALLBACK) {
+Result<void> deliver(const Handle& handle, const std::string& url) {
+  const curl::Outcome outcome = curl::perform(handle);
+  if (outcome.code == CURLE_OK) return {};
+  if (outcome.code == CURLE_ABORTED_BY_CALLBACK) {
     return failure(ErrorCode::cancelled, "the delivery was stopped");
   }
-  why.resize(std::strlen(why.c_str()));
-  return failure(ErrorCode::io_failed, fmt::format("{} did not take the message: {}", host_of(url),
-                                                   why.empty() ? curl_easy_strerror(code) : why));
+  return failure(ErrorCode::io_failed,
+                 fmt::format("{} did not take the message: {}", host_of(url), outcome.why));
 }
 
 tl::unexpected<Error> no_handle() {
@@ -117,7 +89,7 @@ Result<Answer> post(const Post& post, const std::stop_token& stop) {
   Answer answer{};
   curl_easy_setopt(handle.get(), CURLOPT_WRITEFUNCTION, keep_beginning);
   curl_easy_setopt(handle.get(), CURLOPT_WRITEDATA, &answer.body);
-  if (auto done = perform(handle, post.url); !done) return tl::unexpected(std::move(done.error()));
+  if (auto done = deliver(handle, post.url); !done) return tl::unexpected(std::move(done.error()));
   curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &answer.status);
   curl_off_t wait_s = 0;
   curl_easy_getinfo(handle.get(), CURLINFO_RETRY_AFTER, &wait_s);
@@ -162,12 +134,12 @@ Result<void> send_mail(const MailServer& server, const Mail& mail, const std::st
   curl_easy_setopt(handle.get(), CURLOPT_UPLOAD, 1L);
   curl_easy_setopt(handle.get(), CURLOPT_READFUNCTION, read_rest);
   curl_easy_setopt(handle.get(), CURLOPT_READDATA, &rest);
-  return perform(handle, server.url);
+  return deliver(handle, server.url);
 }
 
 std::string host_of(const std::string& url) {
   constexpr const char* kUnknown = "the server";
-  const std::unique_ptr<CURLU, Close> parsed{curl_url()};
+  const std::unique_ptr<CURLU, curl::Close> parsed{curl_url()};
   if (curl_url_set(parsed.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) return kUnknown;
   char* text = nullptr;
   if (curl_url_get(parsed.get(), CURLUPART_HOST, &text, 0) != CURLUE_OK) return kUnknown;

@@ -1,128 +1,79 @@
 #include "adapters/http/client.hpp"
 
-#include <utility>  // Boost 1.74's Asio uses std::exchange without it
+#include <utility>
 
-#include <boost/asio/awaitable.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/connect.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/ssl/context.hpp>
-#include <boost/asio/ssl/host_name_verification.hpp>
-#include <boost/asio/use_awaitable.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
-#include <exception>
-#include <optional>
+#include "adapters/curl/transfer.hpp"
 
 namespace recald::http {
 namespace {
 
-namespace beast = boost::beast;
-using boost::asio::awaitable;
-using boost::asio::ip::tcp;
-using ErrorText = boost::system::error_code;
+struct Body {
+  std::string text;
+  std::size_t bytes_max;
+};
 
-auto into(ErrorText& error) {
-  return boost::asio::redirect_error(boost::asio::use_awaitable, error);
+/// Fewer bytes than were offered end the transfer.
+std::size_t keep(char* bytes, std::size_t, std::size_t count, void* kept) {
+  auto& body = *static_cast<Body*>(kept);
+  if (count > body.bytes_max - body.text.size()) return 0;
+  body.text.append(bytes, count);
+  return count;
 }
 
-auto broken(const Url& url, const ErrorText& error) {
-  return failure(ErrorCode::io_failed, "asking " + url.text() + " failed: " + error.message());
-}
-
-template <class Stream>
-awaitable<Result<Response>> exchange(Stream& stream, const Url& url, const ClientOptions& options) {
-  beast::http::request<beast::http::empty_body> request{beast::http::verb::get, url.path, 11};
-  request.set(beast::http::field::host, url.authority());
-  request.set(beast::http::field::user_agent, "recald");
-  request.keep_alive(false);
-  if (!options.token.empty()) {
-    request.set(beast::http::field::authorization, "Bearer " + options.token);
+tl::unexpected<Error> no_answer(const Url& url, const curl::Handle& handle,
+                                const curl::Outcome& outcome) {
+  if (outcome.code == CURLE_WRITE_ERROR) {
+    return failure(ErrorCode::io_failed,
+                   "asking " + url.text() + " failed: the answer is too long");
   }
-  ErrorText error;
-  co_await beast::http::async_write(stream, request, into(error));
-  if (error) co_return broken(url, error);
+  curl_off_t connected_us = 0;
+  curl_easy_getinfo(handle.get(), CURLINFO_CONNECT_TIME_T, &connected_us);
+  if (connected_us == 0) {
+    return failure(ErrorCode::not_found, "nothing answers at " + url.text() + ": " + outcome.why);
+  }
+  return failure(ErrorCode::io_failed, "asking " + url.text() + " failed: " + outcome.why);
+}
 
-  beast::flat_buffer buffer;
-  beast::http::response_parser<beast::http::string_body> parser;
-  parser.body_limit(options.body_max);
-  co_await beast::http::async_read(stream, buffer, parser, into(error));
-  if (error) co_return broken(url, error);
-  Response response{.status = static_cast<int>(parser.get().result_int()),
-                    .body = std::move(parser.get().body())};
-  for (const auto& field : parser.get()) {
-    response.headers.emplace_back(std::string{field.name_string()}, std::string{field.value()});
+Response response_of(const curl::Handle& handle, std::string body) {
+  long status = 0;
+  curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &status);
+  Response response{.status = static_cast<int>(status), .body = std::move(body)};
+  for (curl_header* header = nullptr;
+       (header = curl_easy_nextheader(handle.get(), CURLH_HEADER, -1, header)) != nullptr;) {
+    response.headers.emplace_back(header->name, header->value);
   }
   response.content_type = response.header("Content-Type");
-  co_return response;
-}
-
-Result<void> set_trust(boost::asio::ssl::context& tls, const ClientOptions& options) {
-  ErrorText error;
-  tls.set_verify_mode(boost::asio::ssl::verify_peer);
-  if (options.trusted_certificate.empty()) {
-    tls.set_default_verify_paths(error);
-  } else {
-    tls.load_verify_file(options.trusted_certificate.string(), error);
-  }
-  if (!error) return {};
-  return failure(ErrorCode::io_failed, "certificate '" + options.trusted_certificate.string() +
-                                           "' cannot be used: " + error.message());
-}
-
-awaitable<Result<Response>> exchange_over_tls(beast::tcp_stream& connected, const Url& url,
-                                              const ClientOptions& options) {
-  boost::asio::ssl::context tls{boost::asio::ssl::context::tls_client};
-  if (auto trusted = set_trust(tls, options); !trusted) co_return tl::unexpected(trusted.error());
-  beast::ssl_stream<beast::tcp_stream> stream{std::move(connected), tls};
-  if (options.trusted_certificate.empty()) {
-    stream.set_verify_callback(boost::asio::ssl::host_name_verification{url.host});
-    SSL_set_tlsext_host_name(stream.native_handle(), url.host.c_str());
-  }
-  ErrorText error;
-  co_await stream.async_handshake(boost::asio::ssl::stream_base::client, into(error));
-  if (error) co_return broken(url, error);
-  // How the connection ends does not matter: the response stated its length.
-  co_return co_await exchange(stream, url, options);
-}
-
-awaitable<Result<Response>> ask(const Url& url, const ClientOptions& options) {
-  const auto executor = co_await boost::asio::this_coro::executor;
-  ErrorText error;
-  tcp::resolver resolver{executor};
-  const auto found =
-      co_await resolver.async_resolve(url.host, std::to_string(url.port), into(error));
-  beast::tcp_stream stream{executor};
-  stream.expires_after(options.timeout);
-  if (!error) co_await stream.async_connect(found, into(error));
-  if (error) {
-    co_return failure(ErrorCode::not_found,
-                      "nothing answers at " + url.text() + ": " + error.message());
-  }
-  if (url.is_tls) co_return co_await exchange_over_tls(stream, url, options);
-  co_return co_await exchange(stream, url, options);
+  return response;
 }
 
 }  // namespace
 
 Result<Response> get(const Url& url, const ClientOptions& options) {
-  boost::asio::io_context context{1};
-  std::optional<Result<Response>> answer;
-  std::exception_ptr thrown;
-  boost::asio::co_spawn(context, ask(url, options),
-                        [&](std::exception_ptr exception, Result<Response> result) {
-                          thrown = exception;
-                          answer = std::move(result);
-                        });
-  context.run();
-  if (thrown || !answer) {
-    return failure(ErrorCode::io_failed, "asking " + url.text() + " failed");
+  const curl::Handle handle =
+      curl::open_transfer(url.text(), {.protocols = "http,https",
+                                       .trusted_certificate = options.trusted_certificate,
+                                       .connect_timeout = options.timeout,
+                                       .timeout = options.timeout});
+  if (!handle) {
+    return failure(ErrorCode::io_failed, "asking " + url.text() + " failed: not enough memory");
   }
-  return *std::move(answer);
+  CURL* const easy = handle.get();
+  curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_1_1));
+  curl_easy_setopt(easy, CURLOPT_PATH_AS_IS, 1L);
+  curl_easy_setopt(easy, CURLOPT_NOPROXY, "*");  // a daemon is near
+  // A daemon's own certificate, which seldom has the name by which it is asked.
+  if (!options.trusted_certificate.empty()) curl_easy_setopt(easy, CURLOPT_SSL_VERIFYHOST, 0L);
+  curl_easy_setopt(easy, CURLOPT_USERAGENT, "recald");
+  curl::List headers;
+  curl::add(headers, "Connection: close");
+  if (!options.token.empty()) curl::add(headers, "Authorization: Bearer " + options.token);
+  curl_easy_setopt(easy, CURLOPT_HTTPHEADER, headers.get());
+  Body body{.text = {}, .bytes_max = options.body_max};
+  curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, keep);
+  curl_easy_setopt(easy, CURLOPT_WRITEDATA, &body);
+  const curl::Outcome outcome = curl::perform(handle);
+  if (outcome.code != CURLE_OK) return no_answer(url, handle, outcome);
+  return response_of(handle, std::move(body.text));
 }
 
 }  // namespace recald::http
