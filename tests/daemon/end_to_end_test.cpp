@@ -9,11 +9,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <regex>
 
 #include "command_line.hpp"
 #include "core/metering/civil_time.hpp"
 #include "simulators/scenario/building_feed.hpp"
+#include "tests/daemon/on_simulated_building.hpp"
 #include "tests/support/sample_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -58,22 +60,12 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Three years of seed 7, faults and all: made once, and copied for each test.
-class EndToEnd : public ::testing::Test {
+class EndToEnd : public testing::OnSimulatedBuilding {
  protected:
-  static void SetUpTestSuite() {
-    feed_ = new recald::testing::TemporaryFolder;
-    const auto written =
-        simulators::write_building_feed({.out = feed_->path(), .scenario = {}, .seed = 7});
-    ASSERT_TRUE(written.has_value()) << written.error().message;
-  }
   static void TearDownTestSuite() {
-    delete feed_;
-    delete calibrated_;
-    feed_ = nullptr;
-    calibrated_ = nullptr;
+    calibrated_.reset();
+    OnSimulatedBuilding::TearDownTestSuite();
   }
-  void SetUp() override { fs::copy(feed_->path(), folder_.path(), fs::copy_options::recursive); }
 
   [[nodiscard]] std::string path(std::string_view name) const { return (folder_ / name).string(); }
 
@@ -94,16 +86,12 @@ class EndToEnd : public ::testing::Test {
 
   /// The building's calibration as it comes.
   const Outcome& calibrated() {
-    if (calibrated_ == nullptr) calibrated_ = new Outcome{calibrate("out", {"--json"})};
+    if (!calibrated_) calibrated_ = calibrate("out", {"--json"});
     return *calibrated_;
   }
 
-  recald::testing::TemporaryFolder folder_;
-  static recald::testing::TemporaryFolder* feed_;
-  static Outcome* calibrated_;
+  inline static std::optional<Outcome> calibrated_;
 };
-recald::testing::TemporaryFolder* EndToEnd::feed_ = nullptr;
-Outcome* EndToEnd::calibrated_ = nullptr;
 
 TEST_F(EndToEnd, MonthsAreThoseOfTheBuilding) {
   const Outcome outcome = run({"replay", path("site.toml"), "--out", path("replayed")});

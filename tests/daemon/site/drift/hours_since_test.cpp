@@ -9,9 +9,8 @@
 #include <string>
 
 #include "daemon/commands/open_site.hpp"
-#include "simulators/scenario/building_feed.hpp"
+#include "tests/daemon/on_simulated_building.hpp"
 #include "tests/daemon/tampered_readings.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -21,15 +20,13 @@ using recald::testing::write_text;
 using testing::multiplied;
 
 /// Three years, of which the chilled-water meter reads too much from the third June on.
-class HoursSince : public ::testing::Test {
+class HoursSince : public testing::OnSimulatedBuilding {
  protected:
   static constexpr int kSince = 29;  // The third June, as a place among the months.
   static constexpr int kUntil = 33;
 
-  HoursSince() {
-    const auto written =
-        simulators::write_building_feed({.out = folder_.path(), .scenario = {}, .seed = 7});
-    EXPECT_TRUE(written.has_value()) << written.error().message;
+  void SetUp() override {
+    OnSimulatedBuilding::SetUp();
     const std::string readings = read_text(folder_ / "readings.csv");
     const int first = std::stoi(readings.substr(readings.find('\n') + 1, 4));
     for (int month = 0; month < 36; ++month) {
@@ -58,7 +55,6 @@ class HoursSince : public ::testing::Test {
     return ask(alarm, 0, kUntil, [] { return true; });
   }
 
-  recald::testing::TemporaryFolder folder_;
   std::vector<std::string> months_;
   std::string readings_;
 };
