@@ -37,7 +37,7 @@ bool is_in_catalogue(std::string_view id) {
   return kind_of(id).group != EffectClass::outside_catalogue;
 }
 
-std::vector<std::string> kinds_in_catalogue(bool in_catalogue) {
+std::vector<std::string> ids_in_catalogue(bool in_catalogue) {
   std::vector<std::string> kinds;
   for (const HiddenChange& change : energyplus::hidden_changes()) {
     if (is_in_catalogue(change.id) == in_catalogue) kinds.emplace_back(change.id);
@@ -206,7 +206,7 @@ class Hider {
   std::vector<std::string> refused_;  ///< Could not move as much as wanted.
 };
 
-OrderedJson date_of(const std::optional<metering::Day>& day) {
+OrderedJson ordered_date_of(const std::optional<metering::Day>& day) {
   return day ? OrderedJson(metering::to_string(*day)) : OrderedJson(nullptr);
 }
 
@@ -225,8 +225,8 @@ OrderedJson effects_json(const std::optional<Hidden>& hidden, const SimulatedBui
                   {"in_catalogue", candidate.kind->group != EffectClass::outside_catalogue},
                   {"strength", hidden->strength},
                   {"unit", candidate.unit()},
-                  {"from", date_of(candidate.from)},
-                  {"to", date_of(candidate.to)},
+                  {"from", ordered_date_of(candidate.from)},
+                  {"to", ordered_date_of(candidate.to)},
                   {"share_of_meter", shares},
                   {"moved_share", moved}});
   return list;
@@ -271,8 +271,8 @@ std::vector<EplusCasePlan> plan_eplus(const PopulationKind& population, std::uin
                {Block::out_of_catalogue, kAbove3});
   Rng order{own, 1};
   shuffle(slots, order);
-  std::vector<std::string> known = kinds_in_catalogue(true);
-  std::vector<std::string> unknown = kinds_in_catalogue(false);
+  std::vector<std::string> known = ids_in_catalogue(true);
+  std::vector<std::string> unknown = ids_in_catalogue(false);
   std::vector<EplusCasePlan> plans;
   std::size_t known_dealt = 0;
   std::size_t unknown_dealt = 0;

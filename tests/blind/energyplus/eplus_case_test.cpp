@@ -15,7 +15,7 @@
 #include "tests/support/installed_energyplus.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::blind {
+namespace recald::blind::eplus_case_test {
 namespace {
 
 using recald::testing::read_text;
@@ -319,4 +319,4 @@ TEST_F(InEnergyPlus, ACaseHidesWhatTheBuildingCanHave) {
 }
 
 }  // namespace
-}  // namespace recald::blind
+}  // namespace recald::blind::eplus_case_test

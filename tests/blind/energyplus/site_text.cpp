@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "simulators/energyplus/model_edits.hpp"
+#include "tests/blind/population/significant_digits.hpp"
 
 namespace recald::blind {
 namespace {
@@ -26,12 +27,6 @@ const Table& table_of(const SizedModel& sized, const std::string& name) {
   static const Table kNone;
   const auto found = sized.tables.find(name);
   return found == sized.tables.end() ? kNone : found->second;
-}
-
-double rounded(double value, int digits) {
-  if (value == 0.0) return 0.0;
-  const double scale = std::pow(10.0, digits - 1 - std::floor(std::log10(std::abs(value))));
-  return std::round(value * scale) / scale;
 }
 
 /// What an engineer remembers of a number: off by some per cent, and rounded.

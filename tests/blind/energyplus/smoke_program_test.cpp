@@ -12,7 +12,7 @@
 #include "tests/support/installed_energyplus.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::blind {
+namespace recald::blind::smoke_program_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST_F(EplusSmoke, IsSealedRepeatableTakenByRecaldDiagnosedAndScored) {
 }
 
 }  // namespace
-}  // namespace recald::blind
+}  // namespace recald::blind::smoke_program_test

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/blind/population/significant_digits.hpp"
+
 namespace recald::blind {
 namespace {
 
@@ -18,11 +20,6 @@ T draw_one(const std::array<T, N>& values, const std::array<double, N>& weights,
     left -= weights[i];
   }
   return values[N - 1];
-}
-
-double rounded(double value, int digits) {
-  const double scale = std::pow(10.0, digits - 1 - std::floor(std::log10(std::abs(value))));
-  return std::round(value * scale) / scale;
 }
 
 struct Range {

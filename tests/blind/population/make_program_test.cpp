@@ -12,7 +12,7 @@
 #include "tests/blind/scoring/seal.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace recald::blind {
+namespace recald::blind::make_program_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -252,4 +252,4 @@ TEST(PlainPopulation, RefusesInOneSentence) {
 }
 
 }  // namespace
-}  // namespace recald::blind
+}  // namespace recald::blind::make_program_test

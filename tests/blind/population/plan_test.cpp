@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-namespace recald::blind {
+namespace recald::blind::plan_test {
 namespace {
 
 using simulators::EffectClass;
@@ -261,4 +261,4 @@ TEST(PlainPlan, SetsOfUsesShareNoSeed) {
 }
 
 }  // namespace
-}  // namespace recald::blind
+}  // namespace recald::blind::plan_test

@@ -7,7 +7,7 @@
 
 #include "tests/blind/population/moved_share.hpp"
 
-namespace recald::blind {
+namespace recald::blind::share_search_test {
 namespace {
 
 struct Found {
@@ -71,4 +71,4 @@ TEST(MovedShare, OfAMeterThatHardlyCountsIsNothing) {
 }
 
 }  // namespace
-}  // namespace recald::blind
+}  // namespace recald::blind::share_search_test

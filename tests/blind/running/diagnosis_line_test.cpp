@@ -6,7 +6,7 @@
 #include "tests/blind/running/made_up_diagnosis.hpp"
 #include "tests/blind/running/strength_of_answer.hpp"
 
-namespace recald::blind {
+namespace recald::blind::diagnosis_line_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -168,4 +168,4 @@ TEST(FailureLine, CountsAsNoneAndSaysWhy) {
 }
 
 }  // namespace
-}  // namespace recald::blind
+}  // namespace recald::blind::diagnosis_line_test

@@ -10,7 +10,7 @@
 #include "tests/blind/scoring/made_up.hpp"
 #include "tests/blind/scoring/result_log.hpp"
 
-namespace recald::blind {
+namespace recald::blind::run_program_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -250,4 +250,4 @@ TEST_F(BlindRun, WhoHasNoUseForAnswersIsNotGivenThem) {
 }
 
 }  // namespace
-}  // namespace recald::blind
+}  // namespace recald::blind::run_program_test
