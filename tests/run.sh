@@ -128,8 +128,8 @@ else
   stage "4 of 7: AddressSanitizer and UBSan"
   build asan tests
   export RECALD_KILLS=40
-  # What differs from the other scenarios by its dates has the same memory.
-  run_tests asan -E "ClockChange|GatewayClock"
+  # What differs from the other scenarios by its dates, or by when the power fails, has the same memory.
+  run_tests asan -E "ClockChange|GatewayClock|PowerCut"
   stage "5 of 7: ThreadSanitizer"
   build tsan tests
   # What differs from the other scenarios by its dates, or by what comes late or not at all, has the same threads.
