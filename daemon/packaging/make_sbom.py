@@ -52,7 +52,7 @@ def with_headers(name):
 
 provided_by = {other: name for name, one in installed.items() for other in names(one["provides"])} | {
     name: name for name in installed}
-linked = [provided_by[name] for name in names(field("Depends")) if name in provided_by]
+linked = {provided_by[name] for name in names(field("Depends")) if name in provided_by}  # systemd stands for two
 sources = {installed[name]["source"] for name in linked}
 compiled_in = sorted({found for name in dev_packages for found in with_headers(name)
                       if installed[found]["source"] not in sources})

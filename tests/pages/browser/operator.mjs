@@ -62,7 +62,7 @@ const run = (command, ...words) =>
   execFileSync(command, words, { cwd: folder, encoding: "utf8", maxBuffer: 1e9 });
 
 /** Looks until there is an answer; its limit is for a machine that does much beside. */
-async function wait(what, look, limit_s = 240) {
+async function wait(what, look, limit_s = 480) {
   const until = Date.now() + 1000 * limit_s;
   for (;;) {
     // A page that is just being replaced may never answer.
