@@ -1,8 +1,8 @@
-/// Eigen's decompositions and its kernel of matrix products, compiled once, in core, with the
-/// options of what computes: a fifth of the time that a source of core takes.
+/// Eigen's decompositions and its kernel of matrix products, compiled once in the test build
+/// instead of in every source that uses them.
 ///
-/// Part of the precompiled headers (CMakeLists.txt). A source that is compiled without them makes
-/// its own instances, which are the same.
+/// Part of the precompiled headers there (CMakeLists.txt). A source that is compiled without them
+/// makes its own instances, which are the same.
 #pragma once
 
 #include <Eigen/Dense>
