@@ -114,7 +114,7 @@ TEST_F(Api, NothingIsEnteredForAMeterThatIsNotPolled) {
 }
 
 TEST_F(Api, MonthsByMeterAndMonth) {
-  loop_.run_for(days{35});
+  pass_months(days{35});
   const Json months = get_json("/api/v1/months")["months"];
   ASSERT_THAT(months, SizeIs(4));
   EXPECT_EQ(months[0]["month"], "2024-03");
@@ -133,7 +133,7 @@ TEST_F(Api, MonthsByMeterAndMonth) {
 }
 
 TEST_F(Api, PagesOfMonthsAreTheWhole) {
-  loop_.run_for(days{35});
+  pass_months(days{35});
   const Json whole = get_json("/api/v1/months")["months"];
   const Json first = get_json("/api/v1/months", {{"limit", "3"}});
   ASSERT_EQ(first["next"], "cooling/2024-04");
@@ -224,7 +224,7 @@ std::vector<std::string> lines_of(const http::Response& response) {
 }
 
 TEST_F(Api, ListsAreCsvForThoseWhoAskForIt) {
-  loop_.run_for(days{35});
+  pass_months(days{35});
   const auto months = lines_of(get("/api/v1/months", {{"format", "csv"}, {"limit", "2"}}));
   ASSERT_THAT(months, SizeIs(3));
   EXPECT_THAT(months[0], StartsWith("meter,month,daily_average_kWh,"));

@@ -16,6 +16,7 @@
 namespace recald::daemon {
 namespace {
 
+using std::chrono::days;
 using std::chrono::hours;
 using std::chrono::minutes;
 using std::chrono::seconds;
@@ -93,7 +94,7 @@ TEST_F(Page, TheWeekIsDrawnWithoutAScript) {
 }
 
 TEST_F(Page, OfAMeterHasItsHistoryAndItsMonths) {
-  loop_.run_for(hours{24 * 35});
+  pass_months(days{35});
   const std::string week = get("/meters/main").body;
   EXPECT_THAT(week, AllOf(HasSubstr("<h1>main</h1>"), HasSubstr("main, mean of an hour"),
                           HasSubstr("Apr 2024"), HasSubstr("1,445\u00a0kWh/day"),
@@ -122,7 +123,7 @@ Json chart_data(const std::string& page) {
 }
 
 TEST_F(Page, OfAMeterHasItsNumbersForTheScriptThatZooms) {
-  loop_.run_for(hours{24 * 35});
+  pass_months(days{35});
   const std::string page = get("/meters/main").body;
   EXPECT_THAT(page, AllOf(HasSubstr("<div class=\"zoomable\"><svg class=\"chart\""),
                           HasSubstr("<script src=\"/charts.js\" defer></script>")));
@@ -162,8 +163,7 @@ TEST_F(Page, OfAMeterIsSmall) {
     const double hour = testing::hours_of(t);
     return 60.0 * hour + 20.0 * std::sin(0.9 * hour) + 2.0 * std::sin(17.3 * hour);
   };
-  begin();
-  loop_.run_for(hours{24 * 35});
+  pass_months(days{35});
   const auto sent = [&](const std::string& path, std::map<std::string, std::string> query = {}) {
     http::Request request{.path = path, .query = std::move(query)};
     request.headers.emplace("accept-encoding", "gzip");
@@ -356,8 +356,7 @@ TEST_F(Page, SaysHowGoodTheDataAre) {
   devices_[2].is_silent = [](std::chrono::milliseconds t) {
     return t > hours{24 * 5} && t < hours{24 * 12};
   };
-  begin();
-  loop_.run_for(hours{24 * 40});
+  pass_months(days{40});
   const std::string page = get("/data").body;
   // Of April: main has all of it, and cooling lacks a week, which was filled.
   EXPECT_THAT(page, HasSubstr("Share of each month that was measured"));
