@@ -64,7 +64,7 @@ run_tests() {
   logs="$logs $log"
   # Three at a time on two cores: whole runs of the daemon wait for their virtual clocks. Behind everything else: the
   # daemon calibrates at the lowest priority and would wait for every other test to end.
-  with_progress "tests" "$log" nice -n 19 ctest --preset "$preset" -j $(($(nproc) + 1)) "$@" || {
+  with_progress "tests" "$log" nice -n 19 ctest --preset "$preset" -j $(($(nproc) + ${waiting:-1})) "$@" || {
     failed="$failed $preset"
     awk '/^ *[0-9]+\/[0-9]+ Test/ { shown = /\*\*\*(Failed|Timeout|Exception|Not Run)/ } shown' "$log" | tail -n 400
   }
@@ -132,8 +132,9 @@ else
   run_tests asan -E "ClockChange|GatewayClock|PowerCut"
   stage "5 of 7: ThreadSanitizer"
   build tsan tests
-  # What differs from the other scenarios by its dates, or by what comes late or not at all, has the same threads.
-  run_tests tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy"
+  # A month of the gateway has the same threads whatever its dates are, and whatever comes late or not at all.
+  run_tests tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy|ARegisterAtZeroForDays|KillsCostNo|\
+AFullDiskForHours|SilentForAWeek"
 
   unset RECALD_KILLS
 
@@ -145,6 +146,8 @@ else
   }
   build test surroundings recald recald-sim
   stage "7 of 7: tests of the surroundings"
+  # Pages that a reader follows, and the browser's operator, wait for real minutes.
+  waiting=2
   run_tests test -L surroundings
   stage ""
 fi
