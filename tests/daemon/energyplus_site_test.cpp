@@ -70,7 +70,7 @@ file = "readings.csv"
 kind = "energyplus"
 file = "model.epJSON"
 outputs = ["electricity", "chilled_water", "heat"]
-runs = 14
+runs = 10
 interval_noise = 0.02
 
 [model.reports]
@@ -100,7 +100,7 @@ std::string followed_site() {
   return edited(text, "heat = \"DistrictHeatingWater:Facility\"\n", "");
 }
 
-/// The office, what its meters recorded in three years, and 14 runs over the first two.
+/// The office, what its meters recorded in three years, and 10 runs over the first two.
 class OnEnergyPlus : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -161,7 +161,7 @@ class OnEnergyPlus : public ::testing::Test {
   }
   /// A site file beside the first, on the same runs.
   static std::string site(const std::string& name, const std::string& text) {
-    write_text(*folder_ / name, edited(text, "runs = 14", "runs = 14\ndesign = \"site-doe\""));
+    write_text(*folder_ / name, edited(text, "runs = 10", "runs = 10\ndesign = \"site-doe\""));
     return path(name);
   }
 
@@ -196,14 +196,14 @@ double energy_kWh(const std::string& readings, const std::string& meter) {
 }
 
 TEST_F(OnEnergyPlus, RunsAreUsedAndNeverMadeAgain) {
-  EXPECT_THAT(made_->out, HasSubstr("14 runs of 3 parameters, 6 outputs in 24 months"));
+  EXPECT_THAT(made_->out, HasSubstr("10 runs of 3 parameters, 6 outputs in 24 months"));
   const Outcome done = run({"calibrate", path("site.toml"), "--json", "--out", path("out")});
   ASSERT_EQ(done.exit_code, kSuccess) << done.err;
   const Json result = Json::parse(done.out);
   EXPECT_EQ(result["status"], "converged");
   EXPECT_LT(result["after"]["calibration"]["chilled_water_daily_kWh"]["cvrmse"], 0.10);
   const Outcome again = run({"doe", path("site.toml"), "--json"});
-  EXPECT_EQ(Json::parse(again.out)["runs_before"], 14);
+  EXPECT_EQ(Json::parse(again.out)["runs_before"], 10);
 }
 
 TEST_F(OnEnergyPlus, WhatTheModelHasIsShownAsLinesToPaste) {
@@ -340,7 +340,7 @@ TEST_F(OnEnergyPlus, AnEffectIsAddedToTheModelAndShrinksItsGap) {
   const Outcome done =
       run({"diagnose", office, "--assume", "equipment_step", "--apply", "--out", path("busier")});
   ASSERT_EQ(done.exit_code, kSuccess) << done.err;
-  EXPECT_THAT(done.err, HasSubstr("The EnergyPlus model gets the effect too: 14 runs into"));
+  EXPECT_THAT(done.err, HasSubstr("The EnergyPlus model gets the effect too: 10 runs into"));
   EXPECT_THAT(done.out, HasSubstr("is now in force"));
   const Json gap = Json::parse(read_text(*folder_ / "busier/diagnosis.json"))["gap"]["energyplus"];
   const auto cvrmse = [&](const char* when) {
@@ -389,7 +389,7 @@ TEST_F(OnEnergyPlus, RunsOfAModelThatWasEditedAreNotTaken) {
 
 TEST_F(OnEnergyPlus, CornersOfThePriorsMayComeTwice) {
   const Outcome done = run(
-      {"doe", path("site.toml"), "--corners", "--runs", "10", "--out", path("corners"), "--json"});
+      {"doe", path("site.toml"), "--corners", "--runs", "9", "--out", path("corners"), "--json"});
   ASSERT_EQ(done.exit_code, kSuccess) << done.err;
   EXPECT_EQ(Json::parse(done.out)["runs_failed"], 0);
   const Outcome checked = run({"metamodel", "--doe", path("site-doe"), "--form", "monthly",

@@ -195,7 +195,7 @@ class InEnergyPlus : public ::testing::Test {
 
   static EplusPlan plan() {
     simulators::Brief brief = simulators::typical_brief(simulators::Use::office);
-    brief.storeys = 2;
+    brief.storeys = 1;
     brief.length_m = 30.0;
     brief.width_m = 14.0;
     return {.id = "test",
@@ -235,7 +235,7 @@ TEST_F(InEnergyPlus, HasTheMetersOfItsPlant) {
 
 TEST_F(InEnergyPlus, LampsOutsideBurnAtNightAndHeatNothing) {
   const std::vector<double> lamps = added_kW("exterior_lighting", 2.0, 0);
-  constexpr double kLamps_kW = 2.0e-3 * 2.0 * 30.0 * 14.0;
+  constexpr double kLamps_kW = 2.0e-3 * 30.0 * 14.0;
   for (std::size_t day = 0; day < 365; ++day) {
     EXPECT_NEAR(lamps[day * 96 + 48], 0.0, 1e-6) << "at noon of day " << day;
     EXPECT_NEAR(lamps[day * 96 + 4], kLamps_kW, 0.01) << "at one in the night of day " << day;
@@ -253,7 +253,7 @@ TEST_F(InEnergyPlus, WeekendsThatRunShowOnWeekends) {
     if (weekday >= 5) weekend_kWh += 0.25 * added[i];
     if (weekday == 3 || weekday == 4) later_kWh += 0.25 * added[i];
   }
-  EXPECT_GT(weekend_kWh, 1000.0);
+  EXPECT_GT(weekend_kWh, 500.0);
   EXPECT_LT(std::abs(later_kWh), 0.1 * weekend_kWh);
 }
 
@@ -268,13 +268,13 @@ TEST_F(InEnergyPlus, WhatBeginsOnADayChangesNothingBefore) {
   ASSERT_TRUE(loads.has_value()) << loads.error().message;
   constexpr std::size_t kJuly = 181 * 96 - 4;  // In summer the day begins an hour earlier.
   for (std::size_t i = 0; i < kJuly; ++i) ASSERT_EQ((*loads)[0][i], building().twin()[0][i]);
-  EXPECT_GT((*loads)[0][kJuly + 10], building().twin()[0][kJuly + 10] + 3.0);
+  EXPECT_GT((*loads)[0][kJuly + 10], building().twin()[0][kJuly + 10] + 1.5);
 }
 
 TEST_F(InEnergyPlus, TheSiteFileTellsWhatDrawingsTell) {
   const std::string site = building().site_text(building().plates());
-  EXPECT_THAT(site, HasSubstr("floor_area_m2 = 840"));
-  EXPECT_THAT(site, HasSubstr("storeys = 2"));
+  EXPECT_THAT(site, HasSubstr("floor_area_m2 = 420"));
+  EXPECT_THAT(site, HasSubstr("storeys = 1"));
   EXPECT_THAT(site, HasSubstr("cooling_occupied_C = 24.0"));
   EXPECT_THAT(site, HasSubstr("heating_unoccupied_C = 17.0"));
   EXPECT_THAT(site, HasSubstr("name = \"south windows\""));
