@@ -135,7 +135,7 @@ else
   build tsan tests
   # A month of the gateway has the same threads whatever its dates are, and whatever comes late or not at all.
   run_tests tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy|ARegisterAtZeroForDays|KillsCostNo|\
-AFullDiskForHours|SilentForAWeek"
+AFullDiskForHours|SilentForAWeek|WeatherSensor.AMonth"
 
   unset RECALD_KILLS
 

@@ -389,7 +389,7 @@ TEST_F(OnEnergyPlus, RunsOfAModelThatWasEditedAreNotTaken) {
 
 TEST_F(OnEnergyPlus, CornersOfThePriorsMayComeTwice) {
   const Outcome done = run(
-      {"doe", path("site.toml"), "--corners", "--runs", "9", "--out", path("corners"), "--json"});
+      {"doe", path("site.toml"), "--corners", "--runs", "10", "--out", path("corners"), "--json"});
   ASSERT_EQ(done.exit_code, kSuccess) << done.err;
   EXPECT_EQ(Json::parse(done.out)["runs_failed"], 0);
   const Outcome checked = run({"metamodel", "--doe", path("site-doe"), "--form", "monthly",
