@@ -133,7 +133,7 @@ else
   run_tests asan -E "ClockChange|GatewayClock|PowerCut|ARegisterAtZeroForDays|SilentForAWeek|LateAfterClose$"
   stage "5 of 7: ThreadSanitizer"
   build tsan tests
-  # A month of the gateway has the same threads whatever its dates are, and whatever comes late or not at all.
+  # A month of the gateway has the same threads whatever its dates are, whatever is late or silent, and whatever ends it.
   run_tests tsan -E "ClockChange|GatewayClock|LateAfterClose|OutagesCostNoEnergy|ARegisterAtZeroForDays|KillsCostNo|\
 AFullDiskForHours|SilentForAWeek|WeatherSensor.AMonth"
 
