@@ -36,7 +36,10 @@ else
   mkdir -p "$root/.build"
   log=$root/.build/demo.log
   build() {
-    (cd "$root" && cmake --preset release -DRECALD_TESTS=OFF) &&
+    # Where the tests were built in it, they stay known: CMake deletes what it no longer knows.
+    tests=
+    [ -f "$root/.build/release/CMakeCache.txt" ] || tests=-DRECALD_TESTS=OFF
+    (cd "$root" && cmake --preset release $tests) &&
       cmake --build "$root/.build/release" --target recald-demo recald-sim-demo --parallel "$(build_jobs)"
   }
   echo "Building recald; the first time takes some minutes."
