@@ -17,7 +17,7 @@ plain=${PLAIN:-100}
 build=$1
 cmake --build "$build" --target blind_make signature_table >/dev/null
 python=$build/naming-study
-sh "$here/python_environment.sh" "$(command -v python3)" "$python" "$here/naming/study-requirements.txt"
+sh "$here/python_environment.sh" "$(command -v python3)" "$python" "$here/blind/requirements.txt"
 [ -f "$python/installed" ] || exit 1
 echo "Populations and tables are in $out. Remove its tables after a change of the program."
 table=$build/tests/naming/signature_table

@@ -22,8 +22,7 @@
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/model/modelled_site.hpp"
-#include "tests/blind/scoring/case_range.hpp"
-#include "tests/blind/scoring/result_log.hpp"
+#include "tests/blind/population/case_range.hpp"
 
 namespace {
 
@@ -71,6 +70,17 @@ SignatureNull null_from(const Json& json, const std::string& name) {
   }
   null.patterns.conservativeResize(Eigen::NoChange, k);
   return null;
+}
+
+/// Folders that hold a site file, sorted.
+std::vector<std::string> cases_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (fs::exists(entry.path() / "site.toml")) names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  return names;
 }
 
 Json list_of(const Eigen::VectorXd& values) {
@@ -135,12 +145,11 @@ int main(int argc, char** argv) {
   app.add_option("--null", null_file, "of null.py: evidence beside it");
   CLI11_PARSE(app, argc, argv);
   const fs::path folder = population / (twins ? "twins" : "cases");
-  const auto listed = blind::cases_in(folder);
-  if (!listed) {
-    std::cerr << listed.error().message << '\n';
+  const std::vector<std::string> names = cases_in(folder);
+  if (names.empty()) {
+    std::cerr << "no case (a folder with a site.toml) in '" << folder.string() << "'\n";
     return 1;
   }
-  const std::vector<std::string>& names = *listed;
   const auto range = blind::case_range_of(cases, names.size());
   if (!range) {
     std::cerr << fmt::format("--cases {}: give 1 to {}\n", cases, names.size());

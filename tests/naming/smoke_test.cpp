@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -45,6 +46,12 @@ class Naming : public ::testing::Test {
     const int status = std::system((command + " >" + said + " 2>&1").c_str());
     ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command << '\n'
                                                                << read_text(said);
+  }
+
+  void SetUp() override {
+    if (!std::filesystem::exists(RECALD_BLIND_ENVIRONMENT "/installed")) {
+      GTEST_SKIP() << "no Python packages";
+    }
   }
 
   /// Makes cases of the development population with seed 1, diagnoses them, and compares what was

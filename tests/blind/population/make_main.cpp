@@ -17,9 +17,9 @@
 #include "adapters/system/parallel_for.hpp"
 #include "adapters/system/write_file.hpp"
 #include "tests/blind/energyplus/eplus_case.hpp"
+#include "tests/blind/population/case_range.hpp"
 #include "tests/blind/population/make_case.hpp"
-#include "tests/blind/scoring/case_range.hpp"
-#include "tests/blind/scoring/seal.hpp"
+#include "tests/blind/population/seal.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "simulators/scenario/scenario.hpp"
+#include "tests/blind/population/block.hpp"
 #include "tests/blind/population/population_kind.hpp"
-#include "tests/blind/scoring/answers.hpp"
 
 namespace recald::blind {
 
