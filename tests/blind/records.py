@@ -1,4 +1,5 @@
 """Files of the blind test: answers and their seal, results, cases. What is read is checked; a mistake is one sentence."""
+
 import datetime
 import fcntl
 import hashlib
@@ -84,7 +85,9 @@ ANSWER = record(
 )
 FITS = by_name(record({"log_score": NUMBER, "cvrmse": POSITIVE}))
 POSTERIORS = by_name(record({"mean": NUMBER, "q05": NUMBER, "q95": NUMBER}))
-ALARM = record({"month": MONTH, "kind": {"enum": ["meter", "parameter", "use", "effect", "unknown", "nothing"]}, "subject": TEXT, "probability": SHARE})
+ALARM = record(
+    {"month": MONTH, "kind": {"enum": ["meter", "parameter", "use", "effect", "unknown", "nothing"]}, "subject": TEXT, "probability": SHARE}
+)
 EFFECTS = NAMES | {"items": NAME | {"not": {"enum": [NONE, UNKNOWN]}}}
 RESULT = record(
     {"case": NAME, "method": NAME, "outcome": {"enum": ["named", "confusable", UNKNOWN, NONE]}, "named": EFFECTS},
@@ -328,7 +331,9 @@ def parse_result(line, where):
     result = {key: value for key, value in checked(result, RESULT, where).items() if value is not None}
     probabilities, named = result.get("probabilities", {}), result["named"]
     if (result["outcome"] == "named") != bool(named):
-        raise Refused(f"{where}: 'outcome' is '{result['outcome']}' with {len(named)} effects in 'named'; it is 'named' exactly if an effect was added")
+        raise Refused(
+            f"{where}: 'outcome' is '{result['outcome']}' with {len(named)} effects in 'named'; it is 'named' exactly if an effect was added"
+        )
     if "probabilities" in result:
         if abs(sum(probabilities.values()) - 1) > SUM_TOLERANCE:
             raise Refused(f"{where}: 'probabilities' sum to {sum(probabilities.values()):.6g}, must sum to 1")

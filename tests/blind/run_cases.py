@@ -1,4 +1,5 @@
 """The blind run: every case of a population by the product's command line, a results line each. See README.md."""
+
 import argparse
 import concurrent.futures
 import json
@@ -94,7 +95,9 @@ def facts_of(diagnosis):
              "located": [{"meter": meter} for meter in distinct(place["meter"] for place in diagnosis["located"])]}  # fmt: skip
     for key in ("parameters_before", "parameters_after"):
         if diagnosis.get(key) is not None:
-            facts[key] = {p["name"]: {"mean": p["mean"] if "mean" in p else p["mode"], "q05": p["q05"], "q95": p["q95"]} for p in diagnosis[key]}
+            facts[key] = {
+                p["name"]: {"mean": p["mean"] if "mean" in p else p["mode"], "q05": p["q05"], "q95": p["q95"]} for p in diagnosis[key]
+            }
     return facts
 
 
@@ -144,7 +147,9 @@ def of_drift(drift):
     alarms = []
     for alarm in drift["alarms"]:
         cause = alarm["causes"][0] if alarm["causes"] else {"kind": "nothing", "subject": None, "probability": 0.0}
-        alarms.append({"month": alarm["month"], "kind": cause["kind"], "subject": cause["subject"] or "", "probability": cause["probability"]})
+        alarms.append(
+            {"month": alarm["month"], "kind": cause["kind"], "subject": cause["subject"] or "", "probability": cause["probability"]}
+        )
     for change in drift["meter_changes"]:
         if change["seen"] >= months[learnt]:
             alarms.append({"month": change["seen"], "kind": "meter", "subject": change["meter"], "probability": 1.0})
@@ -172,7 +177,13 @@ class Run:
         began = time.monotonic()
         with open(said, "wb") as output:
             try:
-                child = subprocess.Popen([self.given.recald, *arguments], stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True)
+                child = subprocess.Popen(
+                    [self.given.recald, *arguments],
+                    stdout=output,
+                    stderr=subprocess.STDOUT,
+                    stdin=subprocess.DEVNULL,
+                    start_new_session=True,
+                )
             except OSError as error:
                 raise Refused(f"cannot start '{self.given.recald}': {error.strerror}") from None
         late = False
@@ -217,7 +228,12 @@ class Run:
             line |= found | cost | {"extra": extra}
             records.parse_result(json.dumps(line), f"the line made of {self.written}")
         except (Failed, Refused) as why:  # A case without a diagnosis counts as "none", and says why.
-            line = {key: line[key] for key in ("case", "method", "version")} | {"outcome": NONE, "named": []} | cost | {"extra": cpu | {"failed": str(why)}}
+            line = (
+                {key: line[key] for key in ("case", "method", "version")}
+                | {"outcome": NONE, "named": []}
+                | cost
+                | {"extra": cpu | {"failed": str(why)}}
+            )
         shutil.rmtree(folder)
         with self.lock:
             records.append_result(self.given.results, json.dumps(line))
@@ -299,7 +315,7 @@ class WrongUse(Refused):
 
 
 def range_of(text, count):
-    """"3" or "3-17", counted from 1; empty for all."""
+    """ "3" or "3-17", counted from 1; empty for all."""
     first, dash, last = (text or f"1-{count}").partition("-")
     last = last if dash else first
     if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last) <= count):
@@ -312,7 +328,9 @@ def arguments():
     path = {"type": pathlib.Path}
     parser.add_argument("--population", required=True, help="folder that holds cases/, or one folder a case", **path)
     parser.add_argument("--results", required=True, help="results file; a run goes on where it ends", **path)
-    parser.add_argument("--method", default="recald", help="its name in the results; oracle needs --answers; calibrate and drift run those commands")
+    parser.add_argument(
+        "--method", default="recald", help="its name in the results; oracle needs --answers; calibrate and drift run those commands"
+    )
     parser.add_argument("--answers", help="folder with <case>.json, for method oracle", **path)
     parser.add_argument("--jobs", type=int, default=2, choices=range(1, 65), metavar="N", help="diagnoses at a time")
     parser.add_argument("--cases", default="", help="only these, such as 1-20")

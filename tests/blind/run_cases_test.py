@@ -1,4 +1,5 @@
 """The blind run, with a shell script in the place of recald."""
+
 import json
 import pathlib
 import subprocess
@@ -56,7 +57,9 @@ class Lines(unittest.TestCase):
         self.assertNotIn("parameters_after", line)
         setpoint = parameter("cooling_setpoint", "degC", 23.0, 25.0)
         line = run_cases.of_diagnosis(diagnosis(parameters_before=[setpoint], parameters_after=[setpoint | {"mean": 23.9}]))
-        self.assertEqual((line["parameters_before"]["cooling_setpoint"]["mean"], line["parameters_after"]["cooling_setpoint"]["mean"]), (24.0, 23.9))
+        self.assertEqual(
+            (line["parameters_before"]["cooling_setpoint"]["mean"], line["parameters_after"]["cooling_setpoint"]["mean"]), (24.0, 23.9)
+        )
 
     def test_what_has_no_figures_is_left_out(self):
         found = diagnosis()
@@ -122,7 +125,9 @@ class Runs(unittest.TestCase):
         self.add("a", "b")
         code, said = self.run_cases("--jobs", "1", "--keep", "kept")
         self.assertEqual(code, 0, said)
-        self.assertIn("recald: 2 of 2 cases have a line in r, 2 of them new; 0 of the new without a diagnosis, 0 of these over 90 s\n", said)
+        self.assertIn(
+            "recald: 2 of 2 cases have a line in r, 2 of them new; 0 of the new without a diagnosis, 0 of these over 90 s\n", said
+        )
         first, second = self.results()
         self.assertEqual((second["case"], second["named"], second["version"]), ("b", ["scale_fault", "clock_offset"], "recald 9.9"))
         self.assertGreater(first["peak_rss_MB"], 0.0)

@@ -6,6 +6,7 @@ score.py append --results F < line
 score.py open --answers DIR --results F... --out scores.json
 score.py hand-in --truth truth.json --classes FILE --answers DIR
 """
+
 import argparse
 import json
 import pathlib
@@ -89,7 +90,9 @@ def truths_of(answer):
 def ranking_of(result, truth):
     """Effects added, in order; then the rest by probability. Of equal ones the true one comes last."""
     probabilities = result.get("probabilities", {})
-    rest = sorted((name for name in probabilities if name not in result["named"]), key=lambda name: (-probabilities[name], name in truth, name))
+    rest = sorted(
+        (name for name in probabilities if name not in result["named"]), key=lambda name: (-probabilities[name], name in truth, name)
+    )
     word = [result["outcome"]] if not probabilities and result["outcome"] in (NONE, UNKNOWN) else []
     return result["named"] + rest + word
 
@@ -217,7 +220,12 @@ def abstention(tops, threshold):
     """If an effect were named whenever it is the most probable answer and P reaches the threshold."""
     names = tops.is_name & (tops.p >= threshold)
     hidden, nothing = tops.block.isin(["single", "pair"]), tops.block == "no_effect"
-    return {"threshold": threshold, "coverage": share(names[hidden]), "accuracy": share(tops.is_true[names]), "false_names": share(names[nothing])}
+    return {
+        "threshold": threshold,
+        "coverage": share(names[hidden]),
+        "accuracy": share(tops.is_true[names]),
+        "false_names": share(names[nothing]),
+    }
 
 
 def probability_scores(rows, bins):
@@ -240,7 +248,11 @@ def probability_scores(rows, bins):
     bin_of = np.minimum((tops.p * bins).astype(int), bins - 1)
     # n_b |right_b - mean_b| = |sum over the bin of (right - probability)|
     excess = np.where(bin_of.to_numpy()[:, None] == np.arange(bins), (tops.is_true - tops.p).to_numpy()[:, None], 0.0)
-    sure = [result["named"][0] in truth for result, truth in zip(rows.result, rows.truth) if result["named"] and result["probabilities"][result["named"][0]] >= SURE]
+    sure = [
+        result["named"][0] in truth
+        for result, truth in zip(rows.result, rows.truth)
+        if result["named"] and result["probabilities"][result["named"][0]] >= SURE
+    ]
     kinds = [("a name", tops.is_name), (NONE, tops.answer == NONE), (UNKNOWN, tops.answer == UNKNOWN)]
     return {
         "cases": len(tops),
@@ -315,7 +327,12 @@ def gap_scores(rows, oracles):
             other_units += 1
         else:
             covered.append(interval["q05"] <= effect["strength"] <= interval["q95"])
-    said = {(name, row.Index) for row in rows.itertuples() for key in ("parameters_before", "parameters_after") for name in row.result.get(key, {})}
+    said = {
+        (name, row.Index)
+        for row in rows.itertuples()
+        for key in ("parameters_before", "parameters_after")
+        for name in row.result.get(key, {})
+    }
     return {
         "large_named": sum(large),
         "reduction_cvrmse": median(known(of[0] for of in claimed)),
@@ -561,7 +578,11 @@ def scores_of(answers, results, method, classes, bins):
         its = table_of(answers, results, other, classes)
         methods.append(method_row(other, its, oracles) | {"against": paired_difference(rows, its, oracles)})
     versions = pd.Series([result.get("version", "") for result in rows.result], dtype=object).value_counts()
-    failures = [{"case": row.case, "block": row.block, "truth": truth_in_full(row.answer), "said": said_in_full(row)} for row in rows.itertuples() if not row.right]
+    failures = [
+        {"case": row.case, "block": row.block, "truth": truth_in_full(row.answer), "said": said_in_full(row)}
+        for row in rows.itertuples()
+        if not row.right
+    ]
     return (
         {"method": method, "cases": len(rows), "population_cases": len(answers), "versions": {k: int(versions[k]) for k in sorted(versions.index)},
          "targets": [target for world in worlds for target in targets(world)], "worlds": worlds}
@@ -626,13 +647,21 @@ def open_answers(given):
         warnings.append(f"{log.replaced} results were replaced by later reruns")
     if len(scores["versions"]) > 1:
         warnings.append(f"The cases were run by {len(scores['versions'])} different versions of {given.method}")
-    scores = {"warnings": warnings, "answers_sha256": whole, "results_sha256": log.hash, "bootstrap": {"seed": SEED, "resamples": RESAMPLES}} | scores
+    scores = {
+        "warnings": warnings,
+        "answers_sha256": whole,
+        "results_sha256": log.hash,
+        "bootstrap": {"seed": SEED, "resamples": RESAMPLES},
+    } | scores
     # The record comes first: an opening whose scores got lost is an opening all the same.
     records.record_opening(given.answers, whole_sha256=whole, results_sha256=log.hash, cases_of_version=scores["versions"])
     records.write_text(given.out, json.dumps(scores, indent=2) + "\n")
     records.write_text(given.out.with_suffix(".md"), tables.page(scores))
     right = scores["naming"]["right"]
-    return "".join(warning + "\n" for warning in warnings) + f"{right['hits'] if right else 0} of {scores['cases']} cases right; wrote {given.out} and the page beside it\n"
+    return (
+        "".join(warning + "\n" for warning in warnings)
+        + f"{right['hits'] if right else 0} of {scores['cases']} cases right; wrote {given.out} and the page beside it\n"
+    )
 
 
 def pending(given):
@@ -668,7 +697,9 @@ def arguments():
 
     needed, flag = {"required": True}, {"action": "store_true"}
     method = {"default": "recald", "help": "the method under test"}
-    command("seal", lambda given: records.seal_answers(given.answers) + "\n", "hashes the answers; prints the hash to publish", answers=needed)
+    command(
+        "seal", lambda given: records.seal_answers(given.answers) + "\n", "hashes the answers; prints the hash to publish", answers=needed
+    )
     command("pending", pending, "lists the cases without a result", population=needed, results=needed, method=method)
     command("append", append, "adds the result on standard input to a results file", results=needed, allow_rerun=flag)
     command("hand-in", hand_in, "makes answers of a truth.json that somebody else wrote", truth=needed, answers=needed, classes=needed,

@@ -1,4 +1,5 @@
 """The scorer on hand-made answers: each expectation is worked out beside it."""
+
 import contextlib
 import copy
 import hashlib
@@ -135,7 +136,9 @@ class Naming(unittest.TestCase):
         population = Population()
         for one in self.each():
             truth = score.truths_of(one)
-            population.add(one, named(one["case"], *truth) if truth[0] not in ("none", "unknown") else said(one["case"], truth[0], {truth[0]: 1.0}))
+            population.add(
+                one, named(one["case"], *truth) if truth[0] not in ("none", "unknown") else said(one["case"], truth[0], {truth[0]: 1.0})
+            )
         naming = population.naming()
         self.assertEqual(counts(naming["right"]), (8, 8))
         for of in naming["groups"]:
@@ -368,10 +371,19 @@ class Gaps(unittest.TestCase):
             return {name: {"mean": value, "q05": value, "q95": value} for name, value in means.items()}
 
         population = Population()  # |27 - 24| / 2 and |1.25 - 1| / 0.5: 1.0. Then 0.3 and 0.1: 0.2.
-        before, after = posteriors(cooling_setpoint_C=27.0, occupancy=1.25), posteriors(cooling_setpoint_C=24.6, occupancy=0.95, zone_mass=7.0)
+        before, after = (
+            posteriors(cooling_setpoint_C=27.0, occupancy=1.25),
+            posteriors(cooling_setpoint_C=24.6, occupancy=0.95, zone_mass=7.0),
+        )
         population.add(single("a"), named("a", "A", parameters_before=before, parameters_after=after))
         population.add(single("b"), said("b", parameters_before=before, parameters_after=before))  # nothing was done about it
-        for case, name, interval in (("c", "A", (2.0, 3.5, "")), ("d", "A", (3.0, 3.0, "h")), ("e", "A", (3.1, 4.0, "")), ("f", "A", (2, 4, "min")), ("g", "B", (2, 4, ""))):
+        for case, name, interval in (
+            ("c", "A", (2.0, 3.5, "")),
+            ("d", "A", (3.0, 3.0, "h")),
+            ("e", "A", (3.1, 4.0, "")),
+            ("f", "A", (2, 4, "min")),
+            ("g", "B", (2, 4, "")),
+        ):
             population.add(single(case), named(case, name, effect_parameter=dict(zip(("q05", "q95", "unit"), interval))))
         found = score.gap_scores(population.rows(), {})
         self.assertEqual(found["bias_before"]["cases"], 1)
@@ -393,7 +405,10 @@ class Gaps(unittest.TestCase):
                 "c02": {"el": dict(zip(keys, (0.12, 0.06, 0.05, 0.07)))}, "s": {"el": dict(zip(keys, (0.9, 0.95, 0.9, 0.1)))}}  # fmt: skip
         population.add(single("s"), said("s"))
         found = score.calibration_scores(population.rows(), fits)
-        self.assertEqual([found[key]["value"] for key in ("cvrmse_by_drawings", "cvrmse_calibrated", "cvrmse_forecast", "cvrmse_yardstick")], [0.12, 0.06, 0.05, 0.07])
+        self.assertEqual(
+            [found[key]["value"] for key in ("cvrmse_by_drawings", "cvrmse_calibrated", "cvrmse_forecast", "cvrmse_yardstick")],
+            [0.12, 0.06, 0.05, 0.07],
+        )
         self.assertEqual((counts(found["made_worse_by_calibrating"]), counts(found["yardstick_better"])), ((1, 3), (1, 3)))
 
 
@@ -407,7 +422,11 @@ class Drift(unittest.TestCase):
             population.add(one, said(one["case"]), said(one["case"], method="drift", drift=drift))
 
         march = {"from": "2022-03-10"}
-        add(single("a", "scale_fault", "meters", share=0.2, **march), ("2022-05", "meter", "electricity_daily_kWh", 0.9), ("2022-04", "use", "", 0.5))
+        add(
+            single("a", "scale_fault", "meters", share=0.2, **march),
+            ("2022-05", "meter", "electricity_daily_kWh", 0.9),
+            ("2022-04", "use", "", 0.5),
+        )
         add(single("b", "outdoor_air_amount", "outdoor_air", share=0.02, **march))
         add(single("c", "server_room", "electrical", share=0.05, **march), ("2022-01", "use", "el", 0.9), ("2022-03", "use", "el", 0.95))
         add(single("d", "server_room", "electrical", share=0.2) | {}, ("2022-03", "meter", "gas", 0.9))
@@ -424,7 +443,9 @@ class Drift(unittest.TestCase):
 
     def test_a_cause_is_right_if_it_is_what_the_effect_would_best_be_called(self):
         def right(hidden, kind, subject=""):
-            return score.is_right_cause(hidden, {"kind": kind, "subject": subject}), score.is_right_side(hidden, {"kind": kind, "subject": subject})
+            return score.is_right_cause(hidden, {"kind": kind, "subject": subject}), score.is_right_side(
+                hidden, {"kind": kind, "subject": subject}
+            )
 
         meter, air = effect("scale_fault", "meters", 0.2), effect("outdoor_air_amount", "outdoor_air")
         server, pool = effect("server_room", "electrical"), effect("swimming_pool", "outside_catalogue")
@@ -456,11 +477,19 @@ class Methods(unittest.TestCase):
         self.assertAlmostEqual(clear["right_difference"]["value"], 0.3)
         self.assertAlmostEqual(clear["mcnemar_p"], 0.03125)  # 2 / 2^6
         self.assertAlmostEqual(self.duel(5, 8, 2)["mcnemar_p"], 0.109375)  # 2 (1 + 10 + 45) / 2^10
-        self.assertEqual([self.duel(*of)["verdict"] for of in ((10, 5, 0), (10, 3, 3), (10, 0, 6))], ["not shown at this size", "not beaten", "not beaten"])
+        self.assertEqual(
+            [self.duel(*of)["verdict"] for of in ((10, 5, 0), (10, 3, 3), (10, 0, 6))],
+            ["not shown at this size", "not beaten", "not beaten"],
+        )
 
     def test_the_main_method_comes_first_and_the_oracle_is_no_rival(self):
         population = Population()
-        population.add(single("a"), named("a", "A", gap=closing(0.9)), named("a", "A", method="aic", gap=closing(0.4)), named("a", "A", method="oracle"))
+        population.add(
+            single("a"),
+            named("a", "A", gap=closing(0.9)),
+            named("a", "A", method="aic", gap=closing(0.4)),
+            named("a", "A", method="oracle"),
+        )
         rows = population.scores()["methods"]
         self.assertEqual([row["method"] for row in rows], ["recald", "aic"])
         self.assertAlmostEqual(rows[1]["against"]["reduction_difference"]["value"], 0.5)
@@ -491,7 +520,10 @@ class Targets(unittest.TestCase):
 
     def test_coverage_has_two_sides(self):
         goal = (0.80, 0.97)
-        verdicts = [score.verdict(score.share([True] * hits + [False] * (n - hits)), goal) for hits, n in ((100, 100), (79, 100), (90, 100), (9, 10))]
+        verdicts = [
+            score.verdict(score.share([True] * hits + [False] * (n - hits)), goal)
+            for hits, n in ((100, 100), (79, 100), (90, 100), (9, 10))
+        ]
         self.assertEqual(verdicts, ["missed", "missed", "met", "met, not shown at this size"])
 
     def test_missing_cases_are_listed_by_method(self):
@@ -614,7 +646,10 @@ class Files(unittest.TestCase):
             catalogue = {"fouling": "plant", "vacancy": "schedules"}
             self.assertEqual(records.write_handed_in(file, "energyplus", catalogue, out), 4)
             found = records.read_answers(out)
-            self.assertEqual({case: one["block"] for case, one in found.items()}, {"plain": "no_effect", "dirty": "single", "both": "pair", "other": "out_of_catalogue"})
+            self.assertEqual(
+                {case: one["block"] for case, one in found.items()},
+                {"plain": "no_effect", "dirty": "single", "both": "pair", "other": "out_of_catalogue"},
+            )
             self.assertEqual((found["dirty"]["effects"][0]["class"], records.largest_share(found["dirty"]["effects"])), ("plant", 0.06))
             for text, part in (('{"a": {"archetype": "x", "weather": "y", "effects": {"fouling": {}}}}', "case a"),
                                ('{"a": {"archetype": "x", "effects": {}}}', "weather"), ("{}", "names no case"), ("no", "truth.json")):  # fmt: skip
@@ -658,13 +693,22 @@ class Opening(unittest.TestCase):
         return json.loads((self.folder / "s.json").read_text())
 
     def test_writes_scores_a_page_and_a_record(self):
-        self.assertEqual(self.open("--bins", 10, "--published", self.whole), f"3 of 3 cases right; wrote {self.folder / 's.json'} and the page beside it\n")
+        self.assertEqual(
+            self.open("--bins", 10, "--published", self.whole),
+            f"3 of 3 cases right; wrote {self.folder / 's.json'} and the page beside it\n",
+        )
         scores, page = self.scores(), (self.folder / "s.md").read_text()
-        self.assertEqual((counts(scores["naming"]["right"]), scores["answers_sha256"], len(scores["probability"]["reliability"])), ((3, 3), self.whole, 10))
+        self.assertEqual(
+            (counts(scores["naming"]["right"]), scores["answers_sha256"], len(scores["probability"]["reliability"])),
+            ((3, 3), self.whole, 10),
+        )
         self.assertIn("Right answer: 3 of 3: 100 % (29 to 100).", page)
         self.assertTrue(page.endswith("## Failures\n\nNone.\n"))
         record = json.loads((self.answers / "opened.json").read_text())
-        self.assertEqual((record[0]["results_sha256"], record[0]["cases_of_version"]), (hashlib.sha256(self.results.read_bytes()).hexdigest(), {"recald 0.1.0": 3}))
+        self.assertEqual(
+            (record[0]["results_sha256"], record[0]["cases_of_version"]),
+            (hashlib.sha256(self.results.read_bytes()).hexdigest(), {"recald 0.1.0": 3}),
+        )
         self.open()
         self.assertIn("The answers were opened 2 times before", self.open())
         self.assertEqual(len(self.scores()["warnings"]), 1)
@@ -700,7 +744,11 @@ class Opening(unittest.TestCase):
         self.assertIn("the case z, to which there is no answer", self.refused())
         self.results.write_text("".join(lines))
         classes = self.folder / "classes.json"
-        for text, part in (('{"night_setback_missing": "plant"}', "of class schedules, but of class plant"), ("[]", "must be a JSON object"), ('{"a": 3}', "must be")):
+        for text, part in (
+            ('{"night_setback_missing": "plant"}', "of class schedules, but of class plant"),
+            ("[]", "must be a JSON object"),
+            ('{"a": 3}', "must be"),
+        ):
             classes.write_text(text)
             self.assertIn(part, self.refused("--classes", classes))
         for wrong in (["open"], ["open", "--bins", "1"], []):
@@ -717,7 +765,11 @@ class Opening(unittest.TestCase):
         self.assertIn("0 of 0 cases right", self.open("--partial"))
 
     def test_failures_stand_by_case_whatever_the_order(self):
-        wrong = result_line("c") | {"named": ["holiday_missing"], "probabilities": {"holiday_missing": 0.83, "none": 0.17}, "version": "recald 0.2.0"}
+        wrong = result_line("c") | {
+            "named": ["holiday_missing"],
+            "probabilities": {"holiday_missing": 0.83, "none": 0.17},
+            "version": "recald 0.2.0",
+        }
         lines = [json.dumps(line) + "\n" for line in (result_line("a"), result_line("b"), wrong)]
         pages = []
         for order in (lines, lines[::-1]):

@@ -109,7 +109,10 @@ def probability_section(probability):
 
     bins = said(probability["reliability"], lambda row: f"{row['from']:.2f} to {row['to']:.2f}")
     kinds = said(probability["reliability_by_kind"], lambda row: row["kind"])
-    curve = [[f"{row['threshold']:g}", *(share_cell(row[key]) for key in ("coverage", "accuracy", "false_names"))] for row in probability["abstention"]]
+    curve = [
+        [f"{row['threshold']:g}", *(share_cell(row[key]) for key in ("coverage", "accuracy", "false_names"))]
+        for row in probability["abstention"]
+    ]
     return (
         f"## Probabilities\n\n{probability['cases']} cases with probabilities.\n\n"
         + table(["score", "value"], summary)
@@ -187,8 +190,33 @@ def method_section(methods):
     ]  # fmt: skip
     return (
         "## Methods\n\n"
-        + table(["method", "cases", "right", "single right", "single top-1", "false names", "out of catalogue: wrong name", "median R, all", "median s"], rows)
-        + table(["against", "shared cases", f"only {methods[0]['method']} right", "only the other right", "difference", "McNemar p", "difference in R", ""], pairs)
+        + table(
+            [
+                "method",
+                "cases",
+                "right",
+                "single right",
+                "single top-1",
+                "false names",
+                "out of catalogue: wrong name",
+                "median R, all",
+                "median s",
+            ],
+            rows,
+        )
+        + table(
+            [
+                "against",
+                "shared cases",
+                f"only {methods[0]['method']} right",
+                "only the other right",
+                "difference",
+                "McNemar p",
+                "difference in R",
+                "",
+            ],
+            pairs,
+        )
     )
 
 
@@ -227,5 +255,10 @@ def page(scores):
         + table(["cases with", "right"], [[row["what"], share_cell(row["right"])] for row in naming["right_by"]])
         + confusion_section(naming)
         + "## Failures\n\n"
-        + (table(["case", "block", "truth", "said"], [[row[key] for key in ("case", "block", "truth", "said")] for row in failures]).removesuffix("\n") or "None.\n")
+        + (
+            table(
+                ["case", "block", "truth", "said"], [[row[key] for key in ("case", "block", "truth", "said")] for row in failures]
+            ).removesuffix("\n")
+            or "None.\n"
+        )
     )
