@@ -1,7 +1,6 @@
 #!/bin/sh
-# The main job from nothing: builds recald, invents an office building with three years of 15-minute meters and one
-# thing wrong in it that its drawings do not tell, calibrates its energy model on two years, checks it on the third,
-# and finds what is wrong.
+# The main job from nothing: builds recald, invents an office building with three years of 15-minute meters and a
+# hidden fault, calibrates its energy model on two years, checks it on the third, and looks for the fault.
 #
 #   sh daemon/demo.sh [--details] [DIR]   results in DIR, by default .demo/ beside the sources; --details prints all
 #                                         that was printed on the way
@@ -92,7 +91,7 @@ echo "2 of 4: turning 15-minute readings into months"
 run replay "$recald" replay --quiet "$dir/site.toml" --out "$dir"
 echo "3 of 4: calibrating the model on the first two years"
 run calibrate "$recald" calibrate --quiet "$dir/site.toml" --seed "$seed" --out "$dir"
-echo "4 of 4: looking for what the drawings do not tell (about a minute)"
+echo "4 of 4: looking for the hidden fault (about a minute)"
 run diagnose "$recald" diagnose --quiet "$dir/site.toml" --seed "$seed" --out "$dir"
 
 # said EXPRESSION: what sed makes of the lines of the diagnosis.
@@ -104,13 +103,13 @@ outcome=$(said 's/^Outcome: \([^.]*\)[.].*/\1/p')
 found=$(said 's/^Outcome: [^.]*[.] *Missing from the model: "\(.*\)"[.]$/\1/p')
 if [ -n "$found" ]; then
   months=$(said 's/^Scatter of days .* in the \([0-9]*\) held-out months: .*/\1/p')
-  sure="$(said 's/^ *\([0-9.]* %\)  .*/\1/p')${months:+, confirmed on $months months kept out of every fit}"
+  sure="$(said 's/^ *\([0-9.]* %\)  .*/\1/p')${months:+, and it holds on $months months of the third year that no fit has used}"
 else
   found="no single effect ($outcome)"
   sure=$(sed -n '/^Explanations:/,/^[^ E]/s/^ *\([0-9.]* %\)  \(.*\)/\2 \1/p' "$dir/diagnose.txt" | head -n 3 | paste -sd, | sed 's/,/, /g')
 fi
 error=$(said 's/^Scatter of days [^:]*: \(.*\)[.]$/\1/p' | sed 's/ % before, / → /g; s/ after//g; s/ and /, /g')
-cost=$(said 's/.* It makes about \(.*\)[.] It costs about \(.*\)[.]$/\2, from \1/p' | sed 's/ a month more at / of /g; s/$/ a month/')
+cost=$(said 's/.* It makes about \(.*\)[.] It costs about \(.*\)[.]$/\2: \1/p' | sed 's/ a month more at / of /g; s/$/ more a month, at 0.22, 0.07 and 0.11 EUR a kWh/')
 
 echo
 echo "Hidden        $hidden (in the simulated building; recald is not told)"

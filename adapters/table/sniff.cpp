@@ -542,8 +542,9 @@ Result<Container> guess_container(std::string_view first_bytes) {
     return byte < 0x09 || (byte > 0x0D && byte < 0x20);
   });
   if (odd > 0) {
-    return failure(ErrorCode::malformed,
-                   "it is no text; recald reads CSV and its kin, .xlsx and Green Button (XML)");
+    return failure(
+        ErrorCode::malformed,
+        "it is no text; recald reads CSV, other delimited text, .xlsx and Green Button (XML)");
   }
   return Container::text;
 }

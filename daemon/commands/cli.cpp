@@ -148,8 +148,9 @@ void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
 
 void add_report(CLI::App& command, ReportArguments& arguments) {
   command
-      .add_option("files", arguments.files,
-                  "Site file (TOML), or exports of meters: CSV and its kin, .xlsx, Green Button")
+      .add_option(
+          "files", arguments.files,
+          "Site file (TOML), or exports of meters: CSV, other delimited text, .xlsx, Green Button")
       ->required();
   add_calibration(command, arguments);
   arguments.out = "report.html";
@@ -327,7 +328,7 @@ struct Verb {
 void add_init(CLI::App& command, InitArguments& arguments) {
   command
       .add_option("files", arguments.files,
-                  "Exports of meters: CSV and its kin, .xlsx, Green Button (XML)")
+                  "Exports of meters: CSV, other delimited text, .xlsx, Green Button (XML)")
       ->required();
   command.add_option("--out", arguments.out, "Folder for site.toml; the current one by default");
   command.add_option("--timezone", arguments.timezone,
@@ -350,7 +351,7 @@ void add_init(CLI::App& command, InitArguments& arguments) {
   command.add_flag("--yes", arguments.asks_nothing,
                    "Accepted for scripts; recald init asks nothing");
   command.add_flag("--json", arguments.json, "Print the result as one JSON object");
-  show_first(command, {"--out", "--timezone", "--epw", "--use", "--area"});
+  show_first(command, {"--out", "--timezone", "--epw", "--use", "--area", "--storeys", "--built"});
 }
 
 void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
@@ -553,10 +554,10 @@ void add_ecm_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
 
 void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
   CLI::App* diagnose =
-      app.add_subcommand("diagnose", "Find the physical effect that the model is missing")
+      app.add_subcommand("diagnose", "Look for the likely cause where model and meters disagree")
           ->group(kFind);
   add_site(*diagnose, given.diagnose);
-  diagnose->add_option("--out", given.diagnose.out, "Folder for diagnosis.json");
+  diagnose->add_option("--out", given.diagnose.out, "Folder for diagnosis.html and diagnosis.json");
   diagnose->add_option("--seed", given.diagnose.seed, "Seed of all random numbers")
       ->capture_default_str();
   diagnose->add_option("--threads", given.diagnose.threads,
@@ -738,7 +739,8 @@ void add_shell_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
 
 /// The whole command line; options point into it, so it stays where it is.
 struct CommandLine {
-  CLI::App app{"Keeps a building's energy model calibrated to its meters.", "recald"};
+  CLI::App app{"Meter readings into months, forecasts and a calibrated model of the building.",
+               "recald"};
   bool quiet = false;
   bool verbose = false;
   Arguments given;

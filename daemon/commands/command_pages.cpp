@@ -29,7 +29,8 @@ PageList setup_pages() {
        {{"site.toml", "The site file; recald schema describes it for editors"},
         {"site.db", "The store of live meters, beside the site file unless it says otherwise"}}},
       {"init",
-       "Looks at exports of meters (CSV and its kin, .xlsx, Green Button XML), finds out how to "
+       "Looks at exports of meters (CSV, other delimited text, .xlsx, Green Button XML), finds out "
+       "how to "
        "read them, and writes a site file in which each guess stands as a comment beside its key. "
        "Files of the same meters that follow each other in time are put together. Nothing is "
        "written where a file cannot be understood, and no site file is written over. With --epw "
