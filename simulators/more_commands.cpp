@@ -9,7 +9,6 @@
 #include "simulators/devices/device_service.hpp"
 #include "simulators/exit.hpp"
 #include "simulators/feed/write_file.hpp"
-#include "simulators/footprint/footprint_figures.hpp"
 
 namespace recald::simulators {
 namespace {
@@ -119,20 +118,6 @@ CLI::App* add_eplus_readings(CLI::App& app, ReadingArguments& given) {
   return readings;
 }
 
-int run_footprints(const std::string& folder) {
-  const auto drawn = draw_footprints(folder);
-  if (!drawn) return failed(drawn.error().message);
-  std::cout << "drew " << *drawn << " figures into " << folder << '\n';
-  return 0;
-}
-
-CLI::App* add_footprints(CLI::App& app, std::string& folder) {
-  CLI::App* footprints =
-      app.add_subcommand("footprints", "draw what each effect does to the meters");
-  footprints->add_option("--out", folder, "folder for the figures; made if absent")->required();
-  return footprints;
-}
-
 }  // namespace
 
 void add_more_commands(CLI::App& app, MoreArguments& given, std::function<int()>& run) {
@@ -140,9 +125,6 @@ void add_more_commands(CLI::App& app, MoreArguments& given, std::function<int()>
   add_eplus(app, given.eplus)->callback([&] { run = [&] { return run_eplus(given.eplus); }; });
   add_eplus_readings(app, given.readings)->callback([&] {
     run = [&] { return run_eplus_readings(given.readings); };
-  });
-  add_footprints(app, given.figures)->callback([&] {
-    run = [&] { return run_footprints(given.figures); };
   });
 }
 

@@ -1,5 +1,4 @@
-/// The commands of recald-sim that need more than buildings: devices to read, EnergyPlus models,
-/// figures.
+/// The commands of recald-sim that need more than buildings: devices to read, EnergyPlus models.
 #pragma once
 
 #include <functional>
@@ -33,7 +32,6 @@ struct MoreArguments {
   MetersArguments meters;
   energyplus::ModelFileOptions eplus;
   ReadingArguments readings;
-  std::string figures;
 };
 
 /// Adds them to `app`; the one that is parsed becomes `run`.
