@@ -90,7 +90,7 @@ Result<ModelDocument> convert(const fs::path& file, const Program& program) {
   const fs::path converted = folder / "in.epJSON";
   if (!fs::exists(converted, failed)) {
     return failure(ErrorCode::malformed,
-                   fmt::format("EnergyPlus's converter makes nothing of '{}'; it said: {}",
+                   fmt::format("EnergyPlus's converter cannot read '{}'; it reported: {}",
                                file.string(), file_text(folder / "said.txt").substr(0, 400)));
   }
   return parse_epjson(file_text(converted), file.string());

@@ -266,7 +266,7 @@ Result<void> Taking::put_months() {
 /// the one before it said. Each figure counts by itself: had it been the last of its batch, there
 /// would be the same jobs. A job is of the newest month that is complete by then, which is what it
 /// calculates, whichever month was corrected. A month of which no output can be used changes
-/// nothing. A month that has not ended anywhere in the world is of a gateway whose clock is wrong.
+/// nothing. A month that has not ended in any time zone comes from a gateway whose clock is wrong.
 Result<void> Taking::put_month_jobs() {
   const auto rows = connection_.run(
       "WITH n AS (SELECT v.number, v.sha256, v.description->>'calibrate_from' AS first_month, "

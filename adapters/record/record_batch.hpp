@@ -31,7 +31,7 @@ struct Progress {
   bool operator==(const Progress&) const = default;
 };
 
-/// Until where the record has committed what one outbox said: the gateway may forget that.
+/// How far the record has committed the entries of one outbox, which the gateway may then delete.
 struct Watermark {
   /// Identity of the outbox: numbers of another mean something else. Negative: of the past that the
   /// store had before. 0: the record has nothing of the site.

@@ -78,18 +78,18 @@ void write_judgement(Html& html, const DiagnosisData& data) {
   if (data.not_confirmed) {
     html.element("p",
                  "Not confirmed: on the months kept back the model with the additions is not "
-                 "better by three to one, or tells one meter clearly worse, or the monthly "
+                 "better by three to one, or predicts one meter clearly worse, or the monthly "
                  "model speaks against them. What was tried has been withdrawn.",
                  "bad");
   } else if (data.outcome == diagnosis::Outcome::named) {
     html.element("p",
-                 "The months kept back confirm it: together the meters are told better by more "
-                 "than three to one, the effect's evidence counted as on this page, and none is "
-                 "told clearly worse.");
+                 "The months kept back confirm it: they are predicted better, by more than three "
+                 "to one over all meters, the effect's evidence counted as on this page, and no "
+                 "meter is predicted clearly worse.");
   } else {
     html.element("p",
-                 "Nothing was added, so there is nothing to compare: this is how the calibrated "
-                 "model tells the months kept back.");
+                 "Nothing was added, so there is nothing to compare: this is how well the "
+                 "calibrated model predicts the months kept back.");
   }
 }
 

@@ -9,6 +9,7 @@
 #include "adapters/report/sections.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/unit.hpp"
+#include "core/statistics/quantile.hpp"
 
 namespace recald::report {
 namespace {
@@ -209,12 +210,6 @@ double share_within_limit(const std::vector<double>& draws) {
   const auto within = std::count_if(draws.begin(), draws.end(),
                                     [](double cvrmse) { return cvrmse <= kMonthlyLimits.cvrmse; });
   return static_cast<double>(within) / static_cast<double>(draws.size());
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// "Calibration months: median 10.8 %, 98 % of the draws within 15 %. "

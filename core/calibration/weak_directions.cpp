@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/display/id_words.hpp"
+#include "core/statistics/quantile.hpp"
 
 namespace recald::calibration {
 namespace {
@@ -15,12 +16,6 @@ constexpr double kStep = 0.01;          // of a prior sd, for finite differences
 constexpr double kWeak = 1.0;           // the prior's own information
 constexpr std::size_t kNamedMax = 4;    // in a sentence, weakest first
 constexpr double kLeastLoading = 0.35;  // worth mentioning: an eighth of the direction
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 template <class Column>
 double median_of(const std::vector<ChainDraws>& chains, Column column) {

@@ -4,15 +4,12 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/statistics/quantile.hpp"
+
 namespace recald::diagnosis {
 namespace {
 
 constexpr double kScoreAt95 = 1.6448536269514722;  // standard normal quantile of 0.95
-
-/// @pre `sorted` is ascending and not empty.
-double quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-}
 
 }  // namespace
 
@@ -28,9 +25,9 @@ std::vector<ParameterPosterior> posterior_of(const Addition& addition) {
                     .unit = p.unit,
                     .mode = addition.eta[j],
                     .sd = addition.eta_sd[j],
-                    .q05 = quantile(sorted, 0.05),
-                    .q50 = quantile(sorted, 0.5),
-                    .q95 = quantile(sorted, 0.95)});
+                    .q05 = quantile_of_sorted(sorted, 0.05),
+                    .q50 = quantile_of_sorted(sorted, 0.5),
+                    .q95 = quantile_of_sorted(sorted, 0.95)});
   }
   return list;
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/absent.hpp"
+#include "core/statistics/quantile.hpp"
 
 namespace recald::profile {
 namespace {
@@ -28,12 +29,6 @@ double trimmed_mean(std::vector<double> values) {
   const auto cut = static_cast<std::ptrdiff_t>(kTrim * static_cast<double>(values.size()));
   const double sum = std::accumulate(values.begin() + cut, values.end() - cut, 0.0);
   return sum / static_cast<double>(std::ssize(values) - 2 * cut);
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
 bool is_usable(const HourlyLoad& load) {

@@ -14,4 +14,9 @@ double quantile_of_sorted(std::span<const double> sorted, double probability) {
   return (1.0 - weight) * sorted[below] + weight * sorted[above];
 }
 
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return quantile_of_sorted(values, 0.5);
+}
+
 }  // namespace recald

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 namespace recald {
 
@@ -14,5 +15,8 @@ namespace recald {
   const std::span<const double> values{sorted.data(), static_cast<std::size_t>(sorted.size())};
   return quantile_of_sorted(values, probability);
 }
+
+/// The middle value; of an even number, the mean of the two in the middle. @pre not empty
+[[nodiscard]] double median(std::vector<double> values);
 
 }  // namespace recald

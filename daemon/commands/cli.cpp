@@ -663,7 +663,7 @@ void add_fleet_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) 
                   "First month to calibrate, YYYY-MM; the last month by default");
   verbs.push_back(
       {add, [&](const Console& console) { return run_fleet_add(given.fleet_sites, console); }});
-  CLI::App* remove = fleet->add_subcommand("remove", "Take nothing more from sites");
+  CLI::App* remove = fleet->add_subcommand("remove", "Stop accepting data from sites");
   add_fleet(*remove, given.fleet_sites);
   remove->add_option("sites", given.fleet_sites.sites, "Ids of sites")->required();
   verbs.push_back({remove, [&](const Console& console) {
@@ -835,7 +835,7 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
                      : line.verbose ? Console::Detail::all
                                     : Console::Detail::usual,
                      console.answers};
-  return signals.exit_code(verb->run(told));  // CLI11 saw to it that there is one
+  return signals.exit_code(verb->run(told));  // CLI11 has required a command
 }
 
 }  // namespace recald::daemon

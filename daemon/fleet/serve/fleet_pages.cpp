@@ -589,7 +589,7 @@ Response metrics(const FleetServed& served) {
   const auto counts = record::job_counts(served.record);
   if (!counts) return unavailable(counts.error());
   PrometheusText text;
-  text.begin("recald_fleet_sites", "gauge", "Registered sites by what is to be seen of them.");
+  text.begin("recald_fleet_sites", "gauge", "Registered sites, by status.");
   text.sample(static_cast<double>(portfolio->rows.size()), {{"state", "all"}});
   for (const std::string_view state : kStates) {
     const auto count = std::ranges::count_if(portfolio->rows, [&](const PortfolioRow& row) {
@@ -597,7 +597,7 @@ Response metrics(const FleetServed& served) {
     });
     text.sample(static_cast<double>(count), {{"state", state}});
   }
-  text.begin("recald_fleet_jobs", "gauge", "Jobs by their state.");
+  text.begin("recald_fleet_jobs", "gauge", "Jobs, by state.");
   for (const auto& [state, count] : *counts) {
     text.sample(static_cast<double>(count), {{"state", name_of(state)}});
   }
@@ -622,10 +622,10 @@ std::optional<std::string> after(const std::string& path, std::string_view prefi
 Response answer_fleet(const FleetServed& served, const Request& request) {
   if (request.method == Method::post) {
     if (request.path == "/api/v1/rerun") return post_rerun(served, request);
-    return http::error_response(404, "not_found", "nothing can be sent there");
+    return http::error_response(404, "not_found", "this address takes no POST requests");
   }
   if (request.method != Method::get && request.method != Method::head) {
-    return http::error_response(405, "method_not_allowed", "ask with GET");
+    return http::error_response(405, "method_not_allowed", "this address takes GET and HEAD only");
   }
   const std::string& path = request.path;
   if (path == "/") return sites_page(served, request);

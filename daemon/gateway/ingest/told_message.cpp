@@ -83,8 +83,8 @@ class Message {
       measured = part == nullptr ? std::nullopt : time_of(*part);
       if (!measured) return refused(wanted, "has no time under '" + wanted.time_pointer + "'");
       if (!is_plausible_time(*measured) || *measured > now_ + kClocksDiffer) {
-        return refused(wanted, "is of " + metering::to_string(*measured) + ", and now it is " +
-                                   metering::to_string(now_));
+        return refused(wanted, "is stamped " + metering::to_string(*measured) +
+                                   ", but the clock says " + metering::to_string(now_));
       }
     } else if (is_retained_) {
       return std::optional<ToldValue>{};

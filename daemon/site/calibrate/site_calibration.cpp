@@ -376,13 +376,12 @@ void add_use_scatter(std::size_t k, SiteCalibration& result,
 
 /// Whether an output is no evidence for the model, and why.
 /// Lights and plugs that were read off a meter fit it by construction, and plant behind it was
-/// taken from it as the drawings have it. A month's highest quarter hour is no mean day.
+/// taken from it as the drawings have it. A month's highest quarter hour is not an average day.
 std::optional<std::string> why_no_evidence(const assessment::OutputCalibration& output,
                                            std::size_t profiled) {
   if (output.unit == "kW") {
-    return "A month's peak is no mean day, which is what schedules tell of, so it is no evidence "
-           "for "
-           "the model. It is forecast by the model's errors in it and in the fitted meters.";
+    return "Schedules describe average days, so a month's peak is no evidence for the model. It is "
+           "forecast from the model's errors in it and in the fitted meters.";
   }
   if (output.meter != profiled) return std::nullopt;
   return "The model's lights and plugs were read off this meter, so it is no evidence for the "

@@ -179,7 +179,7 @@ struct SiteConfig {
   std::vector<MeterConfig> meters;
   /// Those [[meter]] with role = "weather". They are no meters otherwise: no months, no outputs.
   std::vector<MeterConfig> sensors;
-  std::optional<WeatherConfig> weather;  ///< There where the site has a file or a sensor.
+  std::optional<WeatherConfig> weather;  ///< Set if the site has a weather file or sensor.
   std::optional<PeriodConfig> period;
   std::optional<ModelConfig> model;       ///< The first, which the daemon follows.
   std::vector<ModelConfig> other_models;  ///< Calibrated beside it, to be compared.

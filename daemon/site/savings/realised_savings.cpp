@@ -103,7 +103,7 @@ std::vector<std::string> notes_of(const SavingsSince& savings, const SiteCalibra
       "Avoided energy is what the months after would have used, less what they used. Whatever "
       "else has changed since is in it, not the measure alone."};
   if (savings.left_out) {
-    notes.push_back(fmt::format("{} is left out: the date parts it.",
+    notes.push_back(fmt::format("{} is left out: the change falls within it.",
                                 display::month_words(metering::to_string(*savings.left_out))));
   }
   if (savings.before.size() < kWholeYear) {

@@ -89,7 +89,7 @@ TEST_F(Record, TwoConnectionsWithTheSameBatchesTakeEachOnce) {
 }
 
 // A backup of the record was restored: gateways have forgotten what it had confirmed since.
-TEST_F(Record, WhatItHasLessThanItConfirmedIsSaidAndNothingIsTaken) {
+TEST_F(Record, ARecordThatLostConfirmedEntriesReportsItAndAcceptsNothing) {
   ASSERT_TRUE(send(intervals(0, 5)));
   auto batch = intervals(8, 2);
   batch.question = 17;

@@ -25,5 +25,11 @@ TEST(QuantileOfSorted, TakesVectorsOfEigen) {
   EXPECT_DOUBLE_EQ(quantile_of_sorted(Eigen::Vector4d{1.0, 2.0, 3.0, 4.0}, 0.25), 1.75);
 }
 
+TEST(Median, IsTheMeanOfTheTwoInTheMiddle) {
+  EXPECT_DOUBLE_EQ(median({5.0, 1.0, 2.0, 4.0}), 3.0);
+  EXPECT_DOUBLE_EQ(median({5.0, 1.0, 2.0}), 2.0);
+  EXPECT_DOUBLE_EQ(median({7.0}), 7.0);
+}
+
 }  // namespace
 }  // namespace recald

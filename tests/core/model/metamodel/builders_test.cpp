@@ -137,7 +137,7 @@ TEST(MetaModel, OfTheMonthlyFormFollowsALoadThatStops) {
 }
 
 // The first runs of a design with all the parameters of a building, as measures are fitted to.
-TEST(MetaModel, OfTheMonthlyFormKnowsItsErrorWithFewRunsOfManyParameters) {
+TEST(MetaModel, MonthlyFormKnowsItsErrorWithFewRunsOfManyParameters) {
   const auto with_idle = [](int runs, std::uint64_t seed) {
     DesignData design = bent_design(runs, seed);
     Rng rng(seed);
