@@ -1,4 +1,4 @@
-# Installs what is made of the program itself. Needs: units, unit_dir, man_dir, run (the command that starts recald).
+# Installs what is made of the program itself. Needs: units, man_dir, run (the command that starts recald).
 
 # to(PATH VARIABLE): where a path relative to the prefix is installed.
 function(to path variable)
@@ -16,6 +16,10 @@ function(install_printed path)
   message(STATUS "Installing: ${file}")
 endfunction()
 
+set(unit_dir lib/systemd/system)
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set(unit_dir /lib/systemd/system)  # where Debian 12 looks for units of packages
+endif()
 to("${unit_dir}" folder)
 foreach(unit ${units})
   get_filename_component(name "${unit}" NAME)

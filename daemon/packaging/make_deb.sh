@@ -22,18 +22,18 @@ SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct 2>/dev/null || stat -c %Y
 export SOURCE_DATE_EPOCH
 mkdir -p "$place"
 
-set -- -DRECALD_UNIT_DIR=/lib/systemd/system
+set --
 if [ "$arch" = "$(dpkg --print-architecture)" ]; then
   build=$root/.build/release
   sysroot=
   # Where the tests were built in it, they stay known: CMake deletes what it no longer knows.
-  [ -f "$build/CMakeCache.txt" ] || set -- "$@" -DRECALD_TESTS=OFF
+  [ -f "$build/CMakeCache.txt" ] || set -- -DRECALD_TESTS=OFF
 else
   build=$place/build-$arch
   sysroot=$place/sysroot-$arch
   sh "$packaging/make_sysroot.sh" "$arch" "$sysroot"
   # To print its manual pages the program has to run.
-  set -- "$@" -DRECALD_TESTS=OFF -DCMAKE_TOOLCHAIN_FILE="$packaging/sysroot.cmake" -DRECALD_TRIPLET="$triplet" -DCMAKE_SYSROOT="$sysroot" \
+  set -- -DRECALD_TESTS=OFF -DCMAKE_TOOLCHAIN_FILE="$packaging/sysroot.cmake" -DRECALD_TRIPLET="$triplet" -DCMAKE_SYSROOT="$sysroot" \
     -DCMAKE_CROSSCOMPILING_EMULATOR="qemu-${triplet%%-*}-static;-L;$sysroot"
 fi
 cmake -S "$root" -B "$build" --preset release "$@" >/dev/null
