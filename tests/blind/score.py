@@ -569,7 +569,7 @@ def scores_of(answers, results, method, classes, bins):
         return {"wall_s": cost(rows, "wall_s"), "peak_rss_MB": cost(rows, "peak_rss_MB")}
 
     worlds = []
-    for world in sorted(set(rows.world), reverse=True):  # Our own first.
+    for world in sorted(set(rows.world)):
         of = rows[rows.world == world].reset_index(drop=True)
         worlds.append({"world": world, "cases": len(of)} | part(of)
                       | {"nothing_hidden": calibration_scores(of, calibrations), "drift": drift_scores(of, drifts)} | costs(of))  # fmt: skip
