@@ -205,7 +205,7 @@ TEST(Report, CountsTheDrawsWithinTheLimit) {
   data.outputs[0].assessment.emplace().draw_cvrmse_calibration = {0.10, 0.12, 0.15, 0.34};
   const std::string page = render_report(data);
   EXPECT_THAT(page,
-              HasSubstr("Calibration months: median 15.0\u00a0%, 75\u00a0% of the draws within "
+              HasSubstr("Calibration months: median 13.5\u00a0%, 75\u00a0% of the draws within "
                         "15\u00a0%."));
   // The first of 24 bins of one percentage point each, by hand.
   EXPECT_THAT(page,
