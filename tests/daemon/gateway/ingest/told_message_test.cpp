@@ -123,8 +123,9 @@ TEST(ToldMessage, WhatCannotBeReadIsSaid) {
   EXPECT_THAT(why("plant/fan", std::string(100'000, '[')), HasSubstr("is no JSON"));
   EXPECT_THAT(why("plant/fan", R"({"watts":[true]})"), HasSubstr("is no number under '/watts/0'"));
   EXPECT_THAT(why("plant/main", R"({"power":1})"), HasSubstr("has no time under '/time'"));
-  EXPECT_THAT(why("plant/main", R"({"power":1,"time":"2026-02-03T12:06:00Z"})"),
-              HasSubstr("is stamped 2026-02-03T12:06:00Z, but the clock says 2026-02-03T12:00:00Z"));
+  EXPECT_THAT(
+      why("plant/main", R"({"power":1,"time":"2026-02-03T12:06:00Z"})"),
+      HasSubstr("is stamped 2026-02-03T12:06:00Z, but the clock says 2026-02-03T12:00:00Z"));
   EXPECT_THAT(why("plant/main", R"({"power":1,"time":5})"), HasSubstr("is stamped 1970-01-01"));
 }
 
