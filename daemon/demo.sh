@@ -103,13 +103,13 @@ outcome=$(said 's/^Outcome: \([^.]*\)[.].*/\1/p')
 found=$(said 's/^Outcome: [^.]*[.] *Missing from the model: "\(.*\)"[.]$/\1/p')
 if [ -n "$found" ]; then
   months=$(said 's/^Scatter of days .* in the \([0-9]*\) held-out months: .*/\1/p')
-  sure="$(said 's/^ *\([0-9.]* %\)  .*/\1/p')${months:+, and it holds on $months months of the third year that no fit has used}"
+  sure="$(said 's/^ *\([0-9.]* %\)  .*/\1/p')${months:+, and it holds on $months months that no fit has used}"
 else
   found="no single effect ($outcome)"
   sure=$(sed -n '/^Explanations:/,/^[^ E]/s/^ *\([0-9.]* %\)  \(.*\)/\2 \1/p' "$dir/diagnose.txt" | head -n 3 | paste -sd, | sed 's/,/, /g')
 fi
 error=$(said 's/^Scatter of days [^:]*: \(.*\)[.]$/\1/p' | sed 's/ % before, / → /g; s/ after//g; s/ and /, /g')
-cost=$(said 's/.* It makes about \(.*\)[.] It costs about \(.*\)[.]$/\2: \1/p' | sed 's/ a month more at / of /g; s/$/ more a month, at 0.22, 0.07 and 0.11 EUR a kWh/')
+cost=$(said 's/.* It makes about \(.*\)[.] It costs about \(.*\)[.]$/\2: \1/p' | sed 's/ a month more at / more of /g; s/ a month less at / less of /g; s/$/ a month/')
 
 echo
 echo "Hidden        $hidden (in the simulated building; recald is not told)"

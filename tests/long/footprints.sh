@@ -5,10 +5,11 @@
 # Argument: the build folder. Some three minutes.
 set -eu
 here=$(cd "$(dirname "$0")/.." && pwd)
-sh "$here/python_environment.sh" "$(command -v python3)" "$1/blind" "$here/blind/requirements.txt"
-[ -f "$1/blind/installed" ] || exit 1
+python=$1/tests/blind/python
+sh "$here/python_environment.sh" "$(command -v python3)" "$python" "$here/blind/requirements.txt"
+[ -f "$python/installed" ] || exit 1
 set -- "$1" "${OUT:-$1/footprints}"
 if [ -n "${TWINS:-}" ]; then
-  exec "$1/blind/bin/python" "$here/long/footprints.py" --twins "$TWINS" "$2"
+  exec "$python/bin/python" "$here/long/footprints.py" --twins "$TWINS" "$2"
 fi
-exec "$1/blind/bin/python" "$here/long/footprints.py" "$1/simulators/recald-sim" "$2"
+exec "$python/bin/python" "$here/long/footprints.py" "$1/simulators/recald-sim" "$2"

@@ -16,7 +16,7 @@ energyplus=${ENERGYPLUS:-development 1 1-34 development 6 1-40 learning 5 1-33}
 plain=${PLAIN:-100}
 build=$1
 cmake --build "$build" --target blind_make signature_table >/dev/null
-python=$build/naming-study
+python=$build/tests/blind/python
 sh "$here/python_environment.sh" "$(command -v python3)" "$python" "$here/blind/requirements.txt"
 [ -f "$python/installed" ] || exit 1
 echo "Populations and tables are in $out. Remove its tables after a change of the program."
