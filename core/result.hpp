@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <type_traits>
+#include <utility>
 
 #include "core/text/printable.hpp"
 
@@ -42,4 +44,31 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(Error{code, message});
 }
 
+/// What a Result that is no failure holds, moved out of a Result that nobody else has.
+template <class R>
+auto value_of(R&& result) {
+  if constexpr (!std::is_void_v<typename std::remove_cvref_t<R>::value_type>) {
+    return *std::forward<R>(result);
+  }
+}
+
 }  // namespace recald
+
+/// The value of a Result; where it is a failure, the function that this stands in returns its
+/// error.
+///
+/// Only as a whole statement, or as all that initialises or is assigned (`const auto x =
+/// TRY(f());`): of a larger expression, GCC 12 does not destroy what was made before. In a
+/// coroutine it has no place: that returns by co_return.
+#define TRY(...) RECALD_TRY_AS(RECALD_JOINED(tried_, __COUNTER__), __VA_ARGS__)
+
+#define RECALD_TRY_AS(tried, ...)                                                    \
+  __extension__({                                                                    \
+    auto&& tried = (__VA_ARGS__);                                                    \
+    if (!tried) return tl::unexpected(std::forward<decltype(tried)>(tried).error()); \
+    ::recald::value_of(std::forward<decltype(tried)>(tried));                        \
+  })
+
+// Two macros, since the operator ## takes its operands as they are written.
+#define RECALD_JOINED(left, right) RECALD_JOINED_AS_WRITTEN(left, right)
+#define RECALD_JOINED_AS_WRITTEN(left, right) left##right
