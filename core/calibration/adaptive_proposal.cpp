@@ -31,9 +31,7 @@ Result<AdaptiveProposal> AdaptiveProposal::make(const Target& target, const Samp
     proposal.shape_.compute(Eigen::MatrixXd(variances.asDiagonal()));
     return proposal;
   }
-  if (auto factor = factor_of_state(*options.begin_at, d); !factor) {
-    return tl::unexpected(factor.error());
-  }
+  TRY(factor_of_state(*options.begin_at, d));
   proposal.shape_.compute(best_variance_ratio(d) * options.begin_at->covariance);
   proposal.log_scale_ = std::log(options.begin_at->scale);
   return proposal;

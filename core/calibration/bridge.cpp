@@ -68,9 +68,8 @@ Result<Eigen::VectorXd> log_ratios(WarpedTarget& warped, Eigen::Index n, DrawPoi
   Eigen::VectorXd ratios(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::VectorXd u = draw_point(i);
-    const auto value = warped.log_density(u);
-    if (!value) return tl::unexpected(value.error());
-    ratios(i) = *value - log_standard_normal(u);
+    const auto value = TRY(warped.log_density(u));
+    ratios(i) = value - log_standard_normal(u);
   }
   return ratios;
 }
@@ -149,21 +148,17 @@ Result<BridgeEstimate> bridge_log_evidence(Target& target, const Eigen::MatrixXd
                        std::to_string(draws.rows()) + " of " + std::to_string(draws.cols()));
   }
   const Eigen::Index fitted = draws.rows() / 2;
-  auto warped = WarpedTarget::fit(target, draws.topRows(fitted));
-  if (!warped) return tl::unexpected(warped.error());
+  auto warped = TRY(WarpedTarget::fit(target, draws.topRows(fitted)));
   const Eigen::Index n = draws.rows() - fitted;
   // The symmetrised density is the same at mu + L u and mu - L u, so a draw needs no random sign.
-  const auto posterior = log_ratios(*warped, n, [&](Eigen::Index i) {
-    return warped->whiten(draws.row(fitted + i).transpose());
-  });
-  if (!posterior) return tl::unexpected(posterior.error());
-  const auto proposal = log_ratios(*warped, n, [&](Eigen::Index) {
+  const auto posterior = TRY(log_ratios(
+      warped, n, [&](Eigen::Index i) { return warped.whiten(draws.row(fitted + i).transpose()); }));
+  const auto proposal = TRY(log_ratios(warped, n, [&](Eigen::Index) {
     Eigen::VectorXd u(d);
     for (double& value : u) value = rng.normal();
     return u;
-  });
-  if (!proposal) return tl::unexpected(proposal.error());
-  return FixedPoint(*posterior, *proposal).solve();
+  }));
+  return FixedPoint(posterior, proposal).solve();
 }
 
 }  // namespace recald::calibration

@@ -85,10 +85,8 @@ Result<DesignRuns> run_design(const MonthlyModel& prototype, const CalibrationPr
   const design::RunObserver observer = [&context](int done, int total) {
     return !context.observer || context.observer({Progress::Stage::design, 0, done, total});
   };
-  auto outputs =
-      design::run_model(prototype, problem.parameters, design.theta, context.executor, observer);
-  if (!outputs) return tl::unexpected(std::move(outputs.error()));
-  design.outputs = std::move(*outputs);
+  design.outputs = TRY(
+      design::run_model(prototype, problem.parameters, design.theta, context.executor, observer));
   return design;
 }
 
@@ -96,16 +94,16 @@ Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
                                         const CalibrationProblem& problem,
                                         const CalibrationOptions& options, DesignRuns design,
                                         const RunContext& context) {
-  if (auto ok = check_problem(problem, prototype); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_calibration_options(options); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_design(design, problem); !ok) return tl::unexpected(ok.error());
-  auto normalisation = normalise_design(design.outputs, problem.outputs, prototype.month_count());
-  if (!normalisation) return tl::unexpected(normalisation.error());
+  TRY(check_problem(problem, prototype));
+  TRY(check_calibration_options(options));
+  TRY(check_design(design, problem));
+  auto normalisation =
+      TRY(normalise_design(design.outputs, problem.outputs, prototype.month_count()));
 
   Calibration result{};
   result.seed = context.seed;
   result.design = std::move(design);
-  result.normalisation = std::move(*normalisation);
+  result.normalisation = std::move(normalisation);
   result.range = check_range(result.design.outputs, problem.outputs, result.normalisation);
   result.findings = range_findings(result.range, problem.outputs, problem.month_names);
   result.hyper_prior = chosen_hyper_prior(options, result.normalisation.pooled_variance);
@@ -119,27 +117,23 @@ Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
   const MonthlyModel* const sampled_model =
       emulator ? static_cast<const MonthlyModel*>(&emulator->model) : &prototype;
   const auto posterior =
-      Posterior::make(*sampled_model, problem.parameters, std::move(data), result.hyper_prior);
-  if (!posterior) return tl::unexpected(posterior.error());
-  auto sampled = sample_posterior(*posterior, problem.inputs.names, options.sampling, context);
-  if (!sampled) return tl::unexpected(std::move(sampled.error()));
-  result.chains = std::move(sampled->chains);
-  result.parameters = std::move(sampled->parameters);
-  result.hyperparameters = std::move(sampled->hyperparameters);
-  result.sampling = std::move(sampled->report);
-  result.converged = sampled->converged;
+      TRY(Posterior::make(*sampled_model, problem.parameters, std::move(data), result.hyper_prior));
+  auto sampled = TRY(sample_posterior(posterior, problem.inputs.names, options.sampling, context));
+  result.chains = std::move(sampled.chains);
+  result.parameters = std::move(sampled.parameters);
+  result.hyperparameters = std::move(sampled.hyperparameters);
+  result.sampling = std::move(sampled.report);
+  result.converged = sampled.converged;
   result.posterior_mean.resize(static_cast<Eigen::Index>(result.parameters.size()));
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     result.posterior_mean(static_cast<Eigen::Index>(j)) = result.parameters[j].mean;
   }
   result.thinned = thin(result.chains, options.thinned_draws);
   add_posterior_findings(problem, result);
-  append(result.findings, sampled->findings);
-  check_model(*posterior, sampled->points, problem, context, result);
+  append(result.findings, sampled.findings);
+  check_model(posterior, sampled.points, problem, context, result);
   if (options.predictive) {
-    auto predictions = predict_points(*posterior, result.chains, context);
-    if (!predictions) return tl::unexpected(std::move(predictions.error()));
-    result.predictions = std::move(*predictions);
+    result.predictions = TRY(predict_points(posterior, result.chains, context));
   }
   return result;
 }
@@ -148,11 +142,10 @@ Result<Calibration> calibrate(const MonthlyModel& prototype, const CalibrationPr
                               const CalibrationOptions& options, const RunContext& context) {
   // Check before the design too, so that an hour of model runs does not end in "weight
   // outside (0, 1]".
-  if (auto ok = check_problem(problem, prototype); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_calibration_options(options); !ok) return tl::unexpected(ok.error());
-  auto design = run_design(prototype, problem, options.design_runs, context);
-  if (!design) return tl::unexpected(design.error());
-  return calibrate_on_design(prototype, problem, options, std::move(*design), context);
+  TRY(check_problem(problem, prototype));
+  TRY(check_calibration_options(options));
+  auto design = TRY(run_design(prototype, problem, options.design_runs, context));
+  return calibrate_on_design(prototype, problem, options, std::move(design), context);
 }
 
 }  // namespace recald::calibration

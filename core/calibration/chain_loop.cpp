@@ -16,13 +16,12 @@ Result<StartingPoint> start_at(Target& target, const Eigen::VectorXd& position) 
                        " coordinates, but the density has " + std::to_string(target.dimension()) +
                        "; it belongs to another model");
   }
-  const auto value = target.log_density(position);
-  if (!value) return tl::unexpected(value.error());
-  if (!std::isfinite(*value)) {
+  const auto value = TRY(target.log_density(position));
+  if (!std::isfinite(value)) {
     return failure(ErrorCode::not_finite,
                    "the initial state has no positive posterior density; start without it");
   }
-  return StartingPoint{position, *value, 1};
+  return StartingPoint{position, value, 1};
 }
 
 }  // namespace
@@ -31,10 +30,9 @@ Result<StartingPoint> choose_start(Target& target, const SamplerOptions& options
   if (options.begin_at) return start_at(target, options.begin_at->position);
   for (int i = 0; i < kStartsTried; ++i) {
     StartingPoint start{target.draw_start(rng), 0.0, i + 1};
-    const auto value = target.log_density(start.position);
-    if (!value) return tl::unexpected(value.error());
-    start.log_density = *value;
-    if (std::isfinite(*value)) return start;
+    const auto value = TRY(target.log_density(start.position));
+    start.log_density = value;
+    if (std::isfinite(value)) return start;
   }
   return failure(ErrorCode::not_finite, "none of " + std::to_string(kStartsTried) +
                                             " starting points drawn from the prior has a positive "
@@ -77,9 +75,9 @@ Result<Chain> run_chain(ChainKernel& kernel, const SamplerOptions& options, int 
   chain.draws.resize(kept, kernel.position().size());
   chain.log_density.resize(kept);
   for (int done = 1; done <= options.iterations; ++done) {
-    if (auto stepped = kernel.step(); !stepped) return tl::unexpected(stepped.error());
+    TRY(kernel.step());
     if (done <= options.burn_in) {
-      if (auto adapted = kernel.adapt(); !adapted) return tl::unexpected(adapted.error());
+      TRY(kernel.adapt());
       if (done == options.burn_in) kernel.begin_keeping();
     } else {
       chain.draws.row(done - options.burn_in - 1) = kernel.position();

@@ -68,21 +68,18 @@ Result<void> walk(const CutProblem& cut, Rng& rng, ChainDraws& draws, ChainStati
   const int iterations = cut.options.settle_each + cut.options.kept_each * cut.options.stride;
   ChainState state;
   for (Eigen::Index d = 0; d < cut.eta.rows(); ++d) {
-    auto posterior = posterior_at(cut, d);
-    if (!posterior) return tl::unexpected(posterior.error());
+    auto posterior = TRY(posterior_at(cut, d));
     if (d == 0) {
       const int run_in = cut.options.burn_in + 1;
-      auto first = dram(*posterior, {run_in, cut.options.burn_in, {}}, rng);
-      if (!first) return tl::unexpected(first.error());
-      state = first->last;
-      statistics.density_evaluations += first->statistics.density_evaluations;
+      auto first = TRY(dram(posterior, {run_in, cut.options.burn_in, {}}, rng));
+      state = first.last;
+      statistics.density_evaluations += first.statistics.density_evaluations;
     }
     // No burn-in: the steps stay as learnt, and the iterations that settle are dropped here.
-    auto chain = dram(*posterior, {iterations, 0, std::move(state)}, rng);
-    if (!chain) return tl::unexpected(chain.error());
-    state = chain->last;
-    statistics.density_evaluations += chain->statistics.density_evaluations;
-    const ChainDraws part = to_natural_units(*chain, *posterior);
+    auto chain = TRY(dram(posterior, {iterations, 0, std::move(state)}, rng));
+    state = chain.last;
+    statistics.density_evaluations += chain.statistics.density_evaluations;
+    const ChainDraws part = to_natural_units(chain, posterior);
     if (d == 0) draws = room_for(cut, part);
     interleave(cut, d, part, draws);
     if (!go_on(static_cast<int>(d) + 1)) return tl::unexpected(cancelled());

@@ -15,9 +15,7 @@ void Hamiltonian::set_metric_factor(Eigen::MatrixXd factor) { factor_ = std::mov
 
 Result<void> Hamiltonian::evaluate(PhasePoint& point) {
   ++gradient_evaluations_;
-  const auto value = target_.log_density_and_gradient(point.position, gradient_);
-  if (!value) return tl::unexpected(value.error());
-  point.log_density = *value;
+  point.log_density = TRY(target_.log_density_and_gradient(point.position, gradient_));
   point.force.noalias() = factor_.transpose() * gradient_;
   return {};
 }

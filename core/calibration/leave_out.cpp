@@ -48,9 +48,7 @@ Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
     const Eigen::VectorXd theta = thinned.theta.row(d);
     const Eigen::VectorXd& residual =
         posterior.residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
-    if (auto there = points.go_to(chain, thinned.iteration[draw], residual); !there) {
-      return tl::unexpected(there.error());
-    }
+    TRY(points.go_to(chain, thinned.iteration[draw], residual));
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       scores(d, static_cast<Eigen::Index>(b)) = points.log_score(blocks[b]);
     }
@@ -61,17 +59,15 @@ Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
 Result<LeaveOutScore> leave_out_score(Posterior& posterior, const std::vector<ChainDraws>& chains,
                                       int months, int count) {
   const PointBlocks blocks = blocks_of_months(posterior.data().points, months);
-  const auto scores = block_log_scores(posterior, chains, count, blocks);
-  if (!scores) return tl::unexpected(scores.error());
-  const auto loo = psis_loo(*scores);
-  if (!loo) return tl::unexpected(loo.error());
+  const auto scores = TRY(block_log_scores(posterior, chains, count, blocks));
+  const auto loo = TRY(psis_loo(scores));
   LeaveOutScore result{months,
                        static_cast<int>(blocks.size()),
-                       loo->elpd,
-                       loo->standard_error,
-                       loo->pareto_k.maxCoeff(),
+                       loo.elpd,
+                       loo.standard_error,
+                       loo.pareto_k.maxCoeff(),
                        0};
-  result.unreliable = static_cast<int>((loo->pareto_k.array() > kParetoKMax).count());
+  result.unreliable = static_cast<int>((loo.pareto_k.array() > kParetoKMax).count());
   return result;
 }
 

@@ -67,15 +67,14 @@ class Round {
   Result<void> sweep() {
     for (Eigen::Index i = 0; i < at_particle_.size(); ++i) {
       proposal_.draw(rng_, point_);
-      const auto density = target_.log_density(point_);
-      if (!density) return tl::unexpected(density.error());
+      const auto density = TRY(target_.log_density(point_));
       const double at_point = proposal_.log_density(point_);
       ++tried_;
-      weights_.add(*density - at_point);
-      const double log_ratio = *density - population_.log_density(i) + at_particle_(i) - at_point;
+      weights_.add(density - at_point);
+      const double log_ratio = density - population_.log_density(i) + at_particle_(i) - at_point;
       if (!(std::log(rng_.uniform()) < log_ratio)) continue;
       population_.draws.row(i) = point_;
-      population_.log_density(i) = *density;
+      population_.log_density(i) = density;
       at_particle_(i) = at_point;
       ++accepted_;
     }
@@ -113,7 +112,7 @@ Result<double> jump_between_modes(Target& target, Chain& population, Rng& rng, i
   for (int r = 0; r < kRounds; ++r) {
     Round round(target, population, rng);
     for (int sweep = 1; sweep <= sweeps_max && !round.has_jumped_enough(); ++sweep) {
-      if (auto swept = round.sweep(); !swept) return tl::unexpected(std::move(swept.error()));
+      TRY(round.sweep());
       if (observer && !observer(r * sweeps_max + sweep, kRounds * sweeps_max)) {
         return failure(ErrorCode::cancelled, "cancelled while jumping between modes, sweep " +
                                                  std::to_string(sweep) + " of round " +

@@ -59,23 +59,21 @@ class NutsKernel final : public ChainKernel {
   /// Finds a start, the first metric and the first step.
   Result<void> start(const SamplerOptions& options) {
     if (auto found = begin_metric(options); !found) return found;
-    auto start = choose_start(target_, options, rng_);
-    if (!start) return tl::unexpected(start.error());
-    density_evaluations_ = start->evaluations;
-    current_.position = std::move(start->position);
+    auto start = TRY(choose_start(target_, options, rng_));
+    density_evaluations_ = start.evaluations;
+    current_.position = std::move(start.position);
     if (auto evaluated = hamiltonian_.evaluate(current_); !evaluated) return evaluated;
     return options.burn_in == 0 ? Result<void>{} : begin_averaging();
   }
 
   [[nodiscard]] Result<void> step() override {
-    auto transition = trajectories_.transition(current_, step_);
-    if (!transition) return tl::unexpected(transition.error());
-    acceptance_ = transition->acceptance;
+    auto transition = TRY(trajectories_.transition(current_, step_));
+    acceptance_ = transition.acceptance;
     acceptance_sum_ += acceptance_;
     iterations_ += 1.0;
-    divergences_ += transition->diverged ? 1 : 0;
-    depth_limit_hits_ += transition->at_depth_limit ? 1 : 0;
-    energies_.add(transition->energy);
+    divergences_ += transition.diverged ? 1 : 0;
+    depth_limit_hits_ += transition.at_depth_limit ? 1 : 0;
+    energies_.add(transition.energy);
     return {};
   }
 
@@ -121,18 +119,15 @@ class NutsKernel final : public ChainKernel {
       hamiltonian_.set_metric_factor(sd.asDiagonal());
       return {};
     }
-    auto factor = factor_of_state(*options.begin_at, target_.dimension());
-    if (!factor) return tl::unexpected(factor.error());
-    hamiltonian_.set_metric_factor(factor->matrixL());
+    auto factor = TRY(factor_of_state(*options.begin_at, target_.dimension()));
+    hamiltonian_.set_metric_factor(factor.matrixL());
     step_ = options.begin_at->scale;
     return {};
   }
 
   /// Searches for a new step size, because the metric has changed.
   Result<void> begin_averaging() {
-    auto step = reasonable_step(hamiltonian_, current_, step_, rng_);
-    if (!step) return tl::unexpected(step.error());
-    step_ = *step;
+    step_ = TRY(reasonable_step(hamiltonian_, current_, step_, rng_));
     averaging_.restart(step_);
     return {};
   }
@@ -177,10 +172,10 @@ Result<void> check_nuts(const Target& target, const NutsOptions& options) {
 
 Result<Chain> nuts(Target& target, const SamplerOptions& options, Rng& rng,
                    const SamplerObserver& observer, const NutsOptions& nuts_options) {
-  if (auto valid = check_options(options); !valid) return tl::unexpected(valid.error());
-  if (auto valid = check_nuts(target, nuts_options); !valid) return tl::unexpected(valid.error());
+  TRY(check_options(options));
+  TRY(check_nuts(target, nuts_options));
   NutsKernel kernel(target, options, nuts_options, rng);
-  if (auto started = kernel.start(options); !started) return tl::unexpected(started.error());
+  TRY(kernel.start(options));
   return run_chain(kernel, options, 1, observer);
 }
 

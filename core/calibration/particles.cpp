@@ -61,12 +61,11 @@ Result<Particles> draw_particles(Target& target, int count, Rng& rng) {
                       Eigen::VectorXd(count), Eigen::VectorXd::Zero(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::VectorXd position = target.draw_start(rng);
-    const auto value = target.log_density(position);
-    if (!value) return tl::unexpected(value.error());
+    const auto value = TRY(target.log_density(position));
     particles.positions.col(i) = position;
     particles.log_prior(i) = target.log_prior(position);
-    particles.log_likelihood(i) = std::isnan(*value) ? -std::numeric_limits<double>::infinity()
-                                                     : *value - particles.log_prior(i);
+    particles.log_likelihood(i) = std::isnan(value) ? -std::numeric_limits<double>::infinity()
+                                                    : value - particles.log_prior(i);
   }
   return particles;
 }
@@ -118,10 +117,9 @@ Result<bool> ParticleMover::move_one(Particles& particles, Eigen::Index i, doubl
   for (double& u : unit_) u = rng_.normal();
   proposed_.noalias() = shape_.matrixL() * unit_;
   proposed_ = particles.positions.col(i) + scale_ * proposed_;
-  const auto value = target_.log_density(proposed_);
-  if (!value) return tl::unexpected(value.error());
+  const auto value = TRY(target_.log_density(proposed_));
   const double log_prior = target_.log_prior(proposed_);
-  const double log_likelihood = *value - log_prior;
+  const double log_likelihood = value - log_prior;
   const double log_ratio = log_prior - particles.log_prior(i) +
                            temperature * (log_likelihood - particles.log_likelihood(i));
   if (!(rng_.uniform() < metropolis_probability(log_ratio))) return false;
@@ -140,9 +138,8 @@ Result<void> ParticleMover::sweep(Particles& particles, double temperature,
     if (proceed && i % asked_every == asked_every - 1 && !proceed()) {
       return failure(ErrorCode::cancelled, "cancelled in the middle of a sweep");
     }
-    const auto moved = move_one(particles, i, temperature);
-    if (!moved) return tl::unexpected(moved.error());
-    accepted += *moved ? 1 : 0;
+    const auto moved = TRY(move_one(particles, i, temperature));
+    accepted += moved ? 1 : 0;
   }
   evaluations_ += particles.count();
   acceptance_rate_ = static_cast<double>(accepted) / static_cast<double>(particles.count());

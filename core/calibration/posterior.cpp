@@ -181,9 +181,7 @@ const Eigen::VectorXd& Posterior::residual_at(std::span<const double> theta) {
 
 Result<double> Posterior::finite_or_error(double value, std::span<const double> theta) const {
   if (std::isfinite(value)) return value;
-  const auto finite =
-      design::check_finite(parameters_, theta, as_span(outputs_), model_->month_count());
-  if (!finite) return tl::unexpected(finite.error());
+  TRY(design::check_finite(parameters_, theta, as_span(outputs_), model_->month_count()));
   return kMinusInfinity;
 }
 
@@ -205,9 +203,7 @@ Result<LogDensityTerms> Posterior::terms(std::span<const double> theta,
     terms.rho += prior_.rho.log_density_at_logit(logit_from_beta(beta));
   }
   if (!set_hyperparameters(hyper)) return terms;
-  const auto likelihood = log_likelihood(theta);
-  if (!likelihood) return tl::unexpected(likelihood.error());
-  terms.log_likelihood = *likelihood;
+  terms.log_likelihood = TRY(log_likelihood(theta));
   return terms;
 }
 

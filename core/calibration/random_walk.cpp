@@ -30,10 +30,9 @@ ChainStatistics RandomWalk::statistics() const {
 Result<void> RandomWalk::propose(Proposal& proposal, double length) {
   proposal_.to_step(proposal.unit, proposal.step);
   proposal.position = current_.position + length * proposal.step;
-  const auto value = target_.log_density(proposal.position);
-  if (!value) return tl::unexpected(value.error());
+  const auto value = TRY(target_.log_density(proposal.position));
   ++evaluations_;
-  proposal.log_density = *value;
+  proposal.log_density = value;
   return {};
 }
 

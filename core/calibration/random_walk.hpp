@@ -58,12 +58,10 @@ template <class Walk>
 Result<Chain> run_random_walk(Target& target, const SamplerOptions& options, Rng& rng,
                               const SamplerObserver& observer) {
   constexpr int observe_every = 250;
-  if (auto valid = check_options(options); !valid) return tl::unexpected(valid.error());
-  auto proposal = AdaptiveProposal::make(target, options, Walk::target_acceptance, rng);
-  if (!proposal) return tl::unexpected(proposal.error());
-  auto start = choose_start(target, options, rng);
-  if (!start) return tl::unexpected(start.error());
-  Walk walk(target, rng, std::move(*start), std::move(*proposal));
+  TRY(check_options(options));
+  auto proposal = TRY(AdaptiveProposal::make(target, options, Walk::target_acceptance, rng));
+  auto start = TRY(choose_start(target, options, rng));
+  Walk walk(target, rng, std::move(start), std::move(proposal));
   return run_chain(walk, options, observe_every, observer);
 }
 

@@ -59,9 +59,7 @@ class Chains {
     return for_each([&](Worker& worker, int k) -> Result<void> {
       SamplerOptions own = options;
       if (!begin_at.empty()) own.begin_at = begin_at[static_cast<std::size_t>(k)];
-      auto chain = sample(worker, own, k);
-      if (!chain) return tl::unexpected(std::move(chain.error()));
-      worker.chain = std::move(*chain);
+      worker.chain = TRY(sample(worker, own, k));
       return {};
     });
   }
@@ -71,9 +69,8 @@ class Chains {
     return for_each([&](Worker& worker, int k) -> Result<void> {
       const auto kept = static_cast<int>(worker.chain.draws.rows());
       auto more =
-          sample(worker, {.iterations = kept, .burn_in = 0, .begin_at = worker.chain.last}, k);
-      if (!more) return tl::unexpected(std::move(more.error()));
-      append(worker.chain, *more);
+          TRY(sample(worker, {.iterations = kept, .burn_in = 0, .begin_at = worker.chain.last}, k));
+      append(worker.chain, more);
       return {};
     });
   }
@@ -130,8 +127,7 @@ class Chains {
     };
     auto chain = sampler_.run(worker.posterior, options, worker.rng, observer);
     if (!chain || !jumps_) return chain;
-    auto jumped = jump_between_modes(worker.posterior, *chain, worker.rng, kJumpSweeps, observer);
-    if (!jumped) return tl::unexpected(std::move(jumped.error()));
+    TRY(jump_between_modes(worker.posterior, *chain, worker.rng, kJumpSweeps, observer));
     return chain;
   }
 
@@ -222,8 +218,7 @@ class Sampling {
 
  private:
   Result<SampledPosterior> run_named(const Sampler& sampler) {
-    auto done = sampler.is_population ? run_populations(sampler) : run_chains(sampler, nullptr);
-    if (!done) return tl::unexpected(std::move(done.error()));
+    TRY(sampler.is_population ? run_populations(sampler) : run_chains(sampler, nullptr));
     return std::move(result_);
   }
 
@@ -239,13 +234,9 @@ class Sampling {
           return smc(target, own, rng, observer, kPilotMoves);
         }};
     Chains pilot(posterior_, quick, options_.chains, streams::kPilots, context_);
-    if (auto ran = pilot.run({.iterations = kPilotParticles, .burn_in = 0}, {}); !ran) {
-      return tl::unexpected(std::move(ran.error()));
-    }
+    TRY(pilot.run({.iterations = kPilotParticles, .burn_in = 0}, {}));
     pilot.count(result_);
-    if (auto ran = run_chains(chains, &pilot); !ran) {
-      return tl::unexpected(std::move(ran.error()));
-    }
+    TRY(run_chains(chains, &pilot));
     if (result_.converged && disagreement_.empty()) return std::move(result_);
     if (options_.iterations) {
       if (!disagreement_.empty()) {
@@ -262,9 +253,7 @@ class Sampling {
     why += !disagreement_.empty() ? disagreement_
            : apart                ? "its chains disagreed"
                                   : "it had too few effective draws or failed trajectories";
-    if (auto ran = run_populations(populations); !ran) {
-      return tl::unexpected(std::move(ran.error()));
-    }
+    TRY(run_populations(populations));
     result_.report.taken_over = why;
     result_.findings.push_back({FindingKind::sampler_replaced, result_.report.sampler,
                                 "Tempered populations (smc) replaced the chains.",
@@ -451,7 +440,7 @@ Result<SampledPosterior> sample_posterior(const Posterior& posterior,
                                           const std::vector<std::string>& input_names,
                                           const SamplingOptions& options,
                                           const RunContext& context) {
-  if (auto valid = check_sampling(options); !valid) return tl::unexpected(std::move(valid.error()));
+  TRY(check_sampling(options));
   if (options.sampler != nullptr && options.sampler->uses_gradient && !posterior.has_gradient()) {
     return failure(ErrorCode::unsupported,
                    std::string(options.sampler->name) +

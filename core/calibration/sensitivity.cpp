@@ -48,16 +48,14 @@ Result<PriorSensitivity> prior_sensitivity(const MonthlyModel& prototype,
                                            const Calibration& base, const RunContext& context,
                                            double factor) {
   assert(factor > 1.0 && base.parameters.size() == problem.parameters.size());
-  const auto smaller = rerun(prototype, problem, options, base, context, factor);
-  if (!smaller) return tl::unexpected(smaller.error());
-  const auto larger = rerun(prototype, problem, options, base, context, 1.0 / factor);
-  if (!larger) return tl::unexpected(larger.error());
+  const auto smaller = TRY(rerun(prototype, problem, options, base, context, factor));
+  const auto larger = TRY(rerun(prototype, problem, options, base, context, 1.0 / factor));
 
   PriorSensitivity result{factor, {}, {}};
   for (std::size_t j = 0; j < base.parameters.size(); ++j) {
     const Summary& before = base.parameters[j];
-    const double a = smaller->parameters[j].mean;
-    const double b = larger->parameters[j].mean;
+    const double a = smaller.parameters[j].mean;
+    const double b = larger.parameters[j].mean;
     const double move = std::max(std::abs(a - before.mean), std::abs(b - before.mean)) / before.sd;
     const ParameterSensitivity parameter{a, b, move, move > kMoveMax};
     if (parameter.prior_driven) {
@@ -65,8 +63,8 @@ Result<PriorSensitivity> prior_sensitivity(const MonthlyModel& prototype,
     }
     result.parameters.push_back(parameter);
   }
-  keep_unconverged(*smaller, result.findings);
-  keep_unconverged(*larger, result.findings);
+  keep_unconverged(smaller, result.findings);
+  keep_unconverged(larger, result.findings);
   return result;
 }
 

@@ -60,10 +60,9 @@ double next_temperature(const Particles& particles, double temperature, double s
 
 Result<Chain> smc(Target& target, const SamplerOptions& options, Rng& rng,
                   const SamplerObserver& observer, const ParticleMover::Options& moves) {
-  if (auto valid = check_population(options); !valid) return tl::unexpected(valid.error());
-  auto drawn = draw_particles(target, options.iterations, rng);
-  if (!drawn) return tl::unexpected(drawn.error());
-  Particles particles = std::move(*drawn);
+  TRY(check_population(options));
+  auto drawn = TRY(draw_particles(target, options.iterations, rng));
+  Particles particles = std::move(drawn);
   if (!(particles.log_likelihood.maxCoeff() > -std::numeric_limits<double>::infinity())) {
     return failure(ErrorCode::not_finite, "none of " + std::to_string(options.iterations) +
                                               " particles drawn from the prior has a positive "
@@ -87,13 +86,9 @@ Result<Chain> smc(Target& target, const SamplerOptions& options, Rng& rng,
     particles.log_weight = (next - temperature) * particles.log_likelihood;
     log_evidence += log_sum(particles.log_weight) - std::log(options.iterations);
     temperature = next;
-    if (auto shaped = mover.set_shape(covariance(particles)); !shaped) {
-      return tl::unexpected(shaped.error());
-    }
+    TRY(mover.set_shape(covariance(particles)));
     resample(particles, rng);
-    if (auto moved = mover.move(particles, temperature, proceed); !moved) {
-      return tl::unexpected(moved.error());
-    }
+    TRY(mover.move(particles, temperature, proceed));
   }
   return to_chain(particles, mover, log_evidence);
 }

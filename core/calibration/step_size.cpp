@@ -35,9 +35,7 @@ Result<double> reasonable_step(Hamiltonian& hamiltonian, const PhasePoint& point
     trial = point;
     for (double& r : trial.momentum) r = rng.normal();
     const double energy = Hamiltonian::energy(trial);
-    if (auto moved = hamiltonian.leapfrog(trial, step); !moved) {
-      return tl::unexpected(moved.error());
-    }
+    TRY(hamiltonian.leapfrog(trial, step));
     const bool accepted = energy - Hamiltonian::energy(trial) > log_threshold;
     const int wanted = accepted ? 1 : -1;
     if (direction == 0) direction = wanted;
