@@ -102,10 +102,10 @@ Visibility visibility_of(double signal, const Eigen::VectorXd& imitated,
 Result<FootprintGauge> FootprintGauge::calibrate(const SiteProblem& twin) {
   Predictor predictor{twin};
   const SignatureReader reader(twin);
-  const auto ground = lay_ground(predictor, twin, fit_signatures(twin, reader, predictor).scores);
-  if (!ground) return tl::unexpected(ground.error());
-  const auto node = static_cast<std::size_t>(ground->none.best_node);
-  return make(twin, ground->fit, ground->grid[node], ground->none.jacobian);
+  const auto ground =
+      TRY(lay_ground(predictor, twin, fit_signatures(twin, reader, predictor).scores));
+  const auto node = static_cast<std::size_t>(ground.none.best_node);
+  return make(twin, ground.fit, ground.grid[node], ground.none.jacobian);
 }
 
 Result<FootprintGauge> FootprintGauge::make(const SiteProblem& twin,
@@ -123,16 +123,10 @@ Result<FootprintGauge> FootprintGauge::make(const SiteProblem& twin,
     gauge.solved_jacobian_.middleRows(meter.offset, count_of(meter)) =
         noise.meters[g].solve(jacobian.middleRows(meter.offset, count_of(meter)));
   }
-  auto posterior = posterior_factor(jacobian.transpose() * gauge.solved_jacobian_);
-  if (!posterior) return tl::unexpected(posterior.error());
-  gauge.posterior_ = std::move(*posterior);
+  gauge.posterior_ = TRY(posterior_factor(jacobian.transpose() * gauge.solved_jacobian_));
 
-  auto day = gauge.coarse_grain(jacobian, [](const DayPart& p) { return p.day_index; });
-  if (!day) return tl::unexpected(day.error());
-  gauge.day_ = std::move(*day);
-  auto month = gauge.coarse_grain(jacobian, [](const DayPart& p) { return p.month; });
-  if (!month) return tl::unexpected(month.error());
-  gauge.month_ = std::move(*month);
+  gauge.day_ = TRY(gauge.coarse_grain(jacobian, [](const DayPart& p) { return p.day_index; }));
+  gauge.month_ = TRY(gauge.coarse_grain(jacobian, [](const DayPart& p) { return p.month; }));
   return gauge;
 }
 
@@ -151,9 +145,7 @@ Result<FootprintGauge::CoarseGrain> FootprintGauge::coarse_grain(
     information += averages.jacobian.transpose() * averages.jacobian;
     grain.meters.push_back(std::move(averages));
   }
-  auto posterior = posterior_factor(information);
-  if (!posterior) return tl::unexpected(posterior.error());
-  grain.posterior = std::move(*posterior);
+  grain.posterior = TRY(posterior_factor(information));
   return grain;
 }
 

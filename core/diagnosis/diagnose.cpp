@@ -202,9 +202,7 @@ class Search {
   Result<void> begin() {
     Predictor base{site_, {}, proceed_, options_.executor};
     if (auto asked = ask(base); !asked) return asked;
-    auto first = lay_ground(base, site_, question_.names.evidence.scores);
-    if (!first) return tl::unexpected(first.error());
-    first_ = std::move(*first);
+    first_ = TRY(lay_ground(base, site_, question_.names.evidence.scores));
     result_.model_runs += base.runs();
     return {};
   }
@@ -214,20 +212,18 @@ class Search {
     const std::size_t count = result_.passes.size();
     Rng rng{options_.seed, streams::kPasses[count]};
     Predictor predictor{site_, accepted_, proceed_, options_.executor};
-    auto pass = search(predictor, rng);
-    if (!pass) return tl::unexpected(pass.error());
-    const bool named = pass->naming.outcome == Outcome::named && may_add(count);
+    auto pass = TRY(search(predictor, rng));
+    const bool named = pass.naming.outcome == Outcome::named && may_add(count);
     if (named) {
-      result_.added.push_back(addition_of(predictor, site_, question_.open, pass->naming, rng));
-      if (first_.show.count() > 0) shown_.push_back(show(pass->naming, predictor));
+      result_.added.push_back(addition_of(predictor, site_, question_.open, pass.naming, rng));
+      if (first_.show.count() > 0) shown_.push_back(show(pass.naming, predictor));
     }
     if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
-    result_.passes.push_back(std::move(*pass));
+    result_.passes.push_back(std::move(pass));
     result_.model_runs += predictor.runs();
     if (!named) return false;
     const Naming& naming = result_.passes.back().naming;
-    auto added = take_up(result_.added.back(), naming.explanations[*naming.named].fit);
-    if (!added) return tl::unexpected(added.error());
+    TRY(take_up(result_.added.back(), naming.explanations[*naming.named].fit));
     // An addition that the held-out months do not confirm is withdrawn, together
     // with all later ones.
     return question_.assumed || (!shown_.empty() && shown_.back().confirmed);
@@ -285,17 +281,16 @@ class Search {
 
   /// Where the signatures put an effect that is known to be present.
   Result<void> assume(const std::string& id, Predictor& predictor) {
-    const auto meant = meant_by(id, question_.open, site_, list_);
-    if (!meant) return tl::unexpected(meant.error());
+    const auto meant = TRY(meant_by(id, question_.open, site_, list_));
     std::vector<Candidate> asked;
-    for (const std::size_t i : *meant) asked.push_back(question_.open[i]);
+    for (const std::size_t i : meant) asked.push_back(question_.open[i]);
     SignatureEvidence evidence = evidence_of(before_show_, asked, learnt_null(), predictor);
     if (evidence.effects.empty()) {  // Other meters may still show it.
-      question_.assumed = {meant->front(), a_typical(asked.front())};
+      question_.assumed = {meant.front(), a_typical(asked.front())};
     } else {
       const EffectEvidence& e = evidence.effects.front();
       const auto which = static_cast<std::size_t>(e.shape.candidate - asked.data());
-      question_.assumed = {(*meant)[which], e.values, e.scores};
+      question_.assumed = {meant[which], e.values, e.scores};
     }
     question_.names.evidence = {.scores = std::move(evidence.scores)};
     return {};
@@ -304,17 +299,15 @@ class Search {
   /// One pass: where the gap is, and which effect explains it.
   Result<Pass> search(Predictor& predictor, Rng& rng) {
     if (!result_.passes.empty()) {
-      if (auto asked = ask(predictor); !asked) return tl::unexpected(asked.error());
+      TRY(ask(predictor));
     }
-    auto located = locate(now().context(site_), now().none, rng);
-    if (!located) return tl::unexpected(located.error());
-    auto naming = question_.assumed ? take_as_named(predictor, site_, *question_.assumed,
-                                                    question_.open, options_.rules, now())
-                                    : name_effect(predictor, site_, question_.names, question_.open,
-                                                  options_.rules, now());
-    if (!naming) return tl::unexpected(naming.error());
-    return Pass{.located = std::move(*located),
-                .naming = std::move(*naming),
+    auto located = TRY(locate(now().context(site_), now().none, rng));
+    auto naming = TRY(question_.assumed ? take_as_named(predictor, site_, *question_.assumed,
+                                                        question_.open, options_.rules, now())
+                                        : name_effect(predictor, site_, question_.names,
+                                                      question_.open, options_.rules, now()));
+    return Pass{.located = std::move(located),
+                .naming = std::move(naming),
                 .modelled_kW = now().none.parts_kW,
                 .gaps = gaps_of(site_, now(), judge_of(site_, first_, first_.show))};
   }
@@ -343,9 +336,7 @@ class Search {
   Result<void> take_up(const Addition& addition, const JointFit& found) {
     accepted_.push_back(alteration_of(addition.candidate, site_.facts(), addition.eta));
     Predictor altered{site_, accepted_, proceed_, options_.executor};
-    auto next = lay_next_ground(altered, site_, now(), found);
-    if (!next) return tl::unexpected(next.error());
-    latest_ = std::move(*next);
+    latest_ = TRY(lay_next_ground(altered, site_, now(), found));
     if (!shown_.empty()) shown_.back().parameters = beliefs_of(site_, latest_->none);
     result_.model_runs += altered.runs();
     return {};
@@ -380,14 +371,13 @@ Result<Diagnosis> diagnose(const SiteProblem& site, const DiagnoseOptions& optio
   const auto go_on = [&] { return !observer || observer(what, share); };
   Search search{site, options, go_on};
   if (!go_on()) return tl::unexpected(diagnosis_cancelled());
-  if (auto begun = search.begin(); !begun) return tl::unexpected(begun.error());
+  TRY(search.begin());
   for (int turn = 0;; ++turn) {
     what = "looking for disagreements";
     share = 0.2 + 0.15 * turn;
     if (!go_on()) return tl::unexpected(diagnosis_cancelled());
-    const auto more = search.turn();
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) break;
+    const auto more = TRY(search.turn());
+    if (!more) break;
   }
   what = "showing";
   share = 0.95;

@@ -42,10 +42,9 @@ double spread_ratio(const Observations& observations, std::size_t meter,
 Result<NoiseLevel> level_of(const MeterRows& meter, const Eigen::VectorXd& residual) {
   std::optional<LevelFit> best;
   for (const double share : kPatternShares) {
-    auto fitted = fit_levels(residual, meter.design, std::max(meter.mean_kW, 1e-6), share,
-                             best ? std::optional{best->level} : std::nullopt);
-    if (!fitted) return tl::unexpected(fitted.error());
-    if (!best || fitted->log_density > best->log_density) best = *fitted;
+    auto fitted = TRY(fit_levels(residual, meter.design, std::max(meter.mean_kW, 1e-6), share,
+                                 best ? std::optional{best->level} : std::nullopt));
+    if (!best || fitted.log_density > best->log_density) best = fitted;
   }
   return best->level;
 }
@@ -54,9 +53,8 @@ Result<NoiseLevel> level_of(const MeterRows& meter, const Eigen::VectorXd& resid
 Result<NoiseLevel> refined(const MeterRows& meter, const Eigen::VectorXd& residual,
                            const NoiseLevel& near) {
   const double mean = std::max(meter.mean_kW, 1e-6);
-  auto fitted = fit_levels(residual, meter.design, mean, near.pattern_sd / mean, near);
-  if (!fitted) return tl::unexpected(fitted.error());
-  return fitted->level;
+  auto fitted = TRY(fit_levels(residual, meter.design, mean, near.pattern_sd / mean, near));
+  return fitted.level;
 }
 
 /// @param before  Levels of the previous round; empty in the first.
@@ -68,9 +66,8 @@ Result<std::vector<NoiseLevel>> levels_of(const Observations& observations,
     const MeterRows& meter = observations.meters[g];
     const Eigen::VectorXd own =
         residual.segment(meter.offset, static_cast<Eigen::Index>(meter.rows.size()));
-    auto level = before.empty() ? level_of(meter, own) : refined(meter, own, before[g]);
-    if (!level) return tl::unexpected(level.error());
-    levels.push_back(*level);
+    auto level = TRY(before.empty() ? level_of(meter, own) : refined(meter, own, before[g]));
+    levels.push_back(level);
   }
   return levels;
 }
@@ -177,9 +174,8 @@ Result<void> learn_noise(Ground& ground, bool last, const ForEachIndex& executor
   const Eigen::VectorXd gap = ground.fit.measured - ground.fit.stack(ground.none.parts_kW);
   ground.search = search_noise(ground.fit, gap);
   const Eigen::VectorXd left = gap - ground.errors * ground.none.scores.tail(ground.errors.cols());
-  auto levels = levels_of(ground.fit, left, last ? ground.levels : std::vector<NoiseLevel>{});
-  if (!levels) return tl::unexpected(levels.error());
-  ground.levels = std::move(*levels);
+  ground.levels =
+      TRY(levels_of(ground.fit, left, last ? ground.levels : std::vector<NoiseLevel>{}));
   set_gates(ground.fit, left, ground.levels);
   ground.grid = noise_grid(ground.fit, ground.levels, last, executor);
   ground.reference_node = ground.grid.size() / 2;
@@ -206,10 +202,8 @@ void keep_likely_nodes(Ground& ground) {
 Result<void> learn(Predictor& predictor, const SiteProblem& site, bool last, Ground& ground) {
   draw_errors(predictor, site, ground);
   if (auto learnt = learn_noise(ground, last, predictor.executor()); !learnt) return learnt;
-  auto none = fit_jointly(predictor, ground.context(site), Candidate{}, ground.none.scores,
-                          last ? kFine : kRough);
-  if (!none) return tl::unexpected(none.error());
-  ground.none = std::move(*none);
+  ground.none = TRY(fit_jointly(predictor, ground.context(site), Candidate{}, ground.none.scores,
+                                last ? kFine : kRough));
   if (!last) return {};
   keep_likely_nodes(ground);
   return take_usual_errors(ground.context(site), ground.none);
@@ -220,20 +214,14 @@ Result<void> learn(Predictor& predictor, const SiteProblem& site, bool last, Gro
 Result<Ground> lay_ground(Predictor& predictor, const SiteProblem& site,
                           const Eigen::VectorXd& start) {
   Ground ground = plain_ground(site);
-  if (auto enough = require_parts(site, ground.fit); !enough) {
-    return tl::unexpected(enough.error());
-  }
-  auto plain = fit_jointly(predictor, ground.context(site), Candidate{}, start, kRough);
-  if (!plain) return tl::unexpected(plain.error());
-  ground.none = std::move(*plain);
+  TRY(require_parts(site, ground.fit));
+  ground.none = TRY(fit_jointly(predictor, ground.context(site), Candidate{}, start, kRough));
   std::vector<MeterScale> scales(site.meters.size());
   set_levels_scale(ground, scales);
 
   for (const bool last : {false, true}) {
     ground.fit = observe(site, parts_of(site, {Role::fit}), scales);
-    if (auto learnt = learn(predictor, site, last, ground); !learnt) {
-      return tl::unexpected(learnt.error());
-    }
+    TRY(learn(predictor, site, last, ground));
     if (!last) set_spreads(site, ground, scales);
   }
   ground.select = observe(site, parts_of(site, {Role::select}), scales);
@@ -246,9 +234,7 @@ Result<Ground> lay_next_ground(Predictor& predictor, const SiteProblem& site, co
   Ground ground = before;
   ground.none = found;
   ground.none.scores.conservativeResize(std::ssize(site.parameters) + found.usual.size());
-  if (auto learnt = learn(predictor, site, true, ground); !learnt) {
-    return tl::unexpected(learnt.error());
-  }
+  TRY(learn(predictor, site, true, ground));
   return ground;
 }
 

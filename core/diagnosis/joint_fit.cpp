@@ -215,10 +215,10 @@ class ModeSearch {
     const GramSystem system = noise_.gram(observations_, beside(linear, slopes));
     const auto moves = slopes.colwise().squaredNorm().transpose().array() > 0.0;
     for (int trial = 0; trial < kTrialsMax; ++trial) {
-      const auto target = posterior(system, (1.0 + place.damping) * unit_precision(model_.count()));
-      if (!target) return tl::unexpected(target.error());
+      const auto target =
+          TRY(posterior(system, (1.0 + place.damping) * unit_precision(model_.count())));
       // The damping is an additional prior around the current scores; scores without effect stay.
-      const Eigen::VectorXd aim = target->mean + place.damping * (target->covariance * place.own);
+      const Eigen::VectorXd aim = target.mean + place.damping * (target.covariance * place.own);
       const Eigen::VectorXd tried = (place.own + moves.select(aim - place.own, 0.0))
                                         .cwiseMax(-kScoreLimit)
                                         .cwiseMin(kScoreLimit);
@@ -324,10 +324,9 @@ Result<void> take_usual_errors(const FitContext& context, JointFit& fit) {
   const NoiseNode& reference = context.grid[context.reference_node];
   const Eigen::Index k = context.errors.cols();
   const Eigen::VectorXd left = fit.residual + context.errors * fit.usual;
-  const auto usual = posterior(reference.gram(context.observations, beside(left, context.errors)),
-                               unit_precision(k));
-  if (!usual) return tl::unexpected(usual.error());
-  fit.usual = usual->mean;
+  const auto usual = TRY(posterior(
+      reference.gram(context.observations, beside(left, context.errors)), unit_precision(k)));
+  fit.usual = usual.mean;
   fit.scores.segment(std::ssize(context.site.parameters), k) = fit.usual;
   fit.residual = left - context.errors * fit.usual;
   return {};
@@ -342,33 +341,30 @@ Result<JointFit> fit_jointly(Predictor& predictor, const FitContext& context,
   const Eigen::Index k = context.errors.cols();
   const Eigen::Index r = model.eta_count();
   ModeSearch search{model, context, own_scores(start, q, r)};
-  auto ended = search.climb(options.iterations_max, options.small_gain);
-  if (!ended) return tl::unexpected(ended.error());
+  auto ended = TRY(search.climb(options.iterations_max, options.small_gain));
   if (predictor.is_stopped()) return tl::unexpected(diagnosis_cancelled());
   const Place& place = search.place;
   JointFit fit;
-  fit.converged = *ended;
+  fit.converged = ended;
   fit.log_density = place.log_density;
   fit.theta = model.theta(place.own);
   fit.eta = model.eta(place.own);
   fit.scores = all_scores(place.own, Eigen::VectorXd::Zero(k), q);
   fit.residual = place.residual;
   fit.usual = Eigen::VectorXd::Zero(k);
-  if (auto taken = take_usual_errors(context, fit); !taken) return tl::unexpected(taken.error());
+  TRY(take_usual_errors(context, fit));
   fit.jacobian.resize(observations.count(), q + k + r);
   fit.jacobian << place.jacobian.leftCols(q), context.errors, place.jacobian.rightCols(r);
   fit.parts_kW = model.run(place.own);
-  const auto evidence = evidence_over(context.grid, observations, fit.linear_residual(),
-                                      fit.jacobian, predictor.executor());
-  if (!evidence) return tl::unexpected(evidence.error());
-  fit.log_evidence = evidence->log_evidence - model.log_choices();
-  fit.node_weights = evidence->node_weights;
-  fit.best_node = evidence->best_node;
+  const auto evidence = TRY(evidence_over(context.grid, observations, fit.linear_residual(),
+                                          fit.jacobian, predictor.executor()));
+  fit.log_evidence = evidence.log_evidence - model.log_choices();
+  fit.node_weights = evidence.node_weights;
+  fit.best_node = evidence.best_node;
   const NoiseNode& best = context.grid[static_cast<std::size_t>(fit.best_node)];
-  auto spread = posterior(best.gram(observations, beside(fit.linear_residual(), fit.jacobian)),
-                          unit_precision(q + k + r));
-  if (!spread) return tl::unexpected(spread.error());
-  fit.posterior = std::move(*spread);
+  fit.posterior =
+      TRY(posterior(best.gram(observations, beside(fit.linear_residual(), fit.jacobian)),
+                    unit_precision(q + k + r)));
   model.hold_choices(q + k, fit.posterior);
   return fit;
 }

@@ -200,11 +200,10 @@ Result<std::vector<Misfit>> locate(const FitContext& context, const JointFit& no
       if (bins.bins.size() < 2) continue;
       Eigen::MatrixXd columns(bins.columns.rows(), 1 + q + bins.columns.cols());
       columns << none.linear_residual(), none.jacobian, bins.columns;
-      const auto system =
-          marginalise(node.gram(context.observations, columns), Eigen::MatrixXd::Identity(q, q));
-      if (!system) return tl::unexpected(system.error());
-      const Eigen::VectorXd t = score(*system);
-      const Eigen::VectorXd maxima = null_maxima(confusability(*system), options.null_draws, rng);
+      const auto system = TRY(
+          marginalise(node.gram(context.observations, columns), Eigen::MatrixXd::Identity(q, q)));
+      const Eigen::VectorXd t = score(system);
+      const Eigen::VectorXd maxima = null_maxima(confusability(system), options.null_draws, rng);
       TestFamily test{exceedance(maxima, t.cwiseAbs().maxCoeff()), {}};
       std::vector<Misfit> found;
       for (std::size_t k = 0; k < bins.bins.size(); ++k) {

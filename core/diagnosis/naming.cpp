@@ -82,9 +82,7 @@ class Rivals {
     rivals_.push_back({.candidate = start.candidate});
     Explanation& e = rivals_.back();
     Eigen::VectorXd from = start_of(start);
-    auto fit = fit_of(e, from);
-    if (!fit) return tl::unexpected(fit.error());
-    e.fit = std::move(*fit);
+    e.fit = TRY(fit_of(e, from));
     if (start.scores.size() == 0) return {};
     from.head(start.scores.size()) = start.scores;
     return fit_again(e, from);
@@ -97,10 +95,9 @@ class Rivals {
     for (const Explanation& e : rivals_) {
       Eigen::VectorXd from = ground_.none.scores;
       from.head(parameters()) = e.fit.scores.head(parameters());
-      auto base = fit_jointly(predictor_, ground_.context(site_), Candidate{}, from, kFineFit);
-      if (!base) return tl::unexpected(base.error());
-      if (!is_better(*base, ground_.none)) continue;
-      ground_.none = std::move(*base);
+      auto base = TRY(fit_jointly(predictor_, ground_.context(site_), Candidate{}, from, kFineFit));
+      if (!is_better(base, ground_.none)) continue;
+      ground_.none = std::move(base);
       has_moved = true;
     }
     if (!has_moved) return {};
@@ -149,9 +146,8 @@ class Rivals {
   }
 
   Result<void> fit_again(Explanation& e, const Eigen::VectorXd& from) {
-    auto again = fit_of(e, from);
-    if (!again) return tl::unexpected(again.error());
-    if (is_better(*again, e.fit)) e.fit = std::move(*again);
+    auto again = TRY(fit_of(e, from));
+    if (is_better(again, e.fit)) e.fit = std::move(again);
     return {};
   }
 
@@ -276,12 +272,10 @@ Result<Naming> name_effect(Predictor& predictor, const SiteProblem& site,
   for (NameProbability& p : naming.probabilities) {
     if (p.probability < rules.worth_a_fit || fits == rules.fits_max) break;
     if (p.effect == "none" || p.effect == "unknown") continue;
-    if (auto fit = rivals.fit(start_of(p, names, candidates)); !fit) {
-      return tl::unexpected(fit.error());
-    }
+    TRY(rivals.fit(start_of(p, names, candidates)));
     p.explanation = fits++;
   }
-  if (auto fair = rivals.be_fair(); !fair) return tl::unexpected(fair.error());
+  TRY(rivals.be_fair());
   naming.explanations = std::move(rivals).judged(rules);
   decide(naming, rules);
   return naming;
@@ -291,8 +285,8 @@ Result<Naming> take_as_named(Predictor& predictor, const SiteProblem& site,
                              const EffectStart& start, const std::vector<Candidate>& candidates,
                              const NamingRules& rules, Ground& ground) {
   Rivals rivals{predictor, site, candidates, ground};
-  if (auto fit = rivals.fit(start); !fit) return tl::unexpected(fit.error());
-  if (auto fair = rivals.be_fair(); !fair) return tl::unexpected(fair.error());
+  TRY(rivals.fit(start));
+  TRY(rivals.be_fair());
   const Candidate& assumed = candidates[start.candidate];
   return Naming{.outcome = Outcome::named,
                 .probabilities = {{std::string{assumed.effect->id}, assumed.meter, 1.0, 0}},

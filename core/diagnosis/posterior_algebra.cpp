@@ -65,16 +65,15 @@ Result<GramSystem> marginalise(const GramSystem& system, const Eigen::MatrixXd& 
     return failure(ErrorCode::not_positive_definite,
                    "the prior precision of the parameters is not positive definite");
   }
-  const auto factor = posterior_factor(system, prior_precision);
-  if (!factor) return tl::unexpected(factor.error());
+  const auto factor = TRY(posterior_factor(system, prior_precision));
 
   std::vector<Eigen::Index> kept{0};
   for (Eigen::Index j = q + 1; j < system.gram.rows(); ++j) kept.push_back(j);
   const Eigen::MatrixXd explained =
-      factor->matrixL().solve(Eigen::MatrixXd(system.gram.middleRows(1, q)(Eigen::all, kept)));
+      factor.matrixL().solve(Eigen::MatrixXd(system.gram.middleRows(1, q)(Eigen::all, kept)));
   GramSystem rest;
   rest.gram = system.gram(kept, kept) - explained.transpose() * explained;
-  rest.log_determinant = system.log_determinant + log_determinant(*factor) - log_prior;
+  rest.log_determinant = system.log_determinant + log_determinant(factor) - log_prior;
   rest.points = system.points;
   return rest;
 }
@@ -83,10 +82,9 @@ Result<GaussianPosterior> posterior(const GramSystem& system,
                                     const Eigen::MatrixXd& prior_precision) {
   const Eigen::Index q = prior_precision.rows();
   if (q == 0) return GaussianPosterior{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
-  const auto factor = posterior_factor(system, prior_precision);
-  if (!factor) return tl::unexpected(factor.error());
-  return GaussianPosterior{factor->solve(Eigen::VectorXd(system.gram.col(0).segment(1, q))),
-                           factor->solve(Eigen::MatrixXd::Identity(q, q))};
+  const auto factor = TRY(posterior_factor(system, prior_precision));
+  return GaussianPosterior{factor.solve(Eigen::VectorXd(system.gram.col(0).segment(1, q))),
+                           factor.solve(Eigen::MatrixXd::Identity(q, q))};
 }
 
 GramSystem select(const GramSystem& system, std::span<const Eigen::Index> columns) {

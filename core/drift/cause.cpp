@@ -411,9 +411,7 @@ Result<std::vector<Eigen::VectorXd>> known_before(const ChangeCase& change,
   if (months.empty()) {
     return failure(ErrorCode::not_enough_data, "there is no month before the change");
   }
-  if (auto learnt = before.learn(std::move(months), proceed); !learnt) {
-    return tl::unexpected(learnt.error());
-  }
+  TRY(before.learn(std::move(months), proceed));
   if (!before.has_begun()) {
     return failure(ErrorCode::not_enough_data, "there are too few months before the change");
   }
@@ -424,18 +422,17 @@ Result<std::vector<Cause>> weigh_causes(const ChangeCase& change,
                                         const std::vector<Eigen::VectorXd>& before,
                                         const CauseOptions& options, std::uint64_t seed) {
   auto posterior =
-      Posterior::make(change.model, change.parameters, known_points(change), change.prior);
-  if (!posterior) return tl::unexpected(posterior.error());
+      TRY(Posterior::make(change.model, change.parameters, known_points(change), change.prior));
 
   const std::vector<LevelBlock> blocks = level_blocks(change);
-  MonthsSinceChange since{*posterior, change.since};
+  MonthsSinceChange since{posterior, change.since};
   std::vector<Contest> contests = contests_of(change, options, meters_of(change, since, blocks));
   Trial trial{change, options, since, blocks};
   Rng rng{seed, streams::kCauses.first};
-  Eigen::VectorXd theta(posterior->parameter_count());
-  calibration::Hyperparameters hyper{0.0, 0.0, Eigen::VectorXd(posterior->kernel_dimension())};
+  Eigen::VectorXd theta(posterior.parameter_count());
+  calibration::Hyperparameters hyper{0.0, 0.0, Eigen::VectorXd(posterior.kernel_dimension())};
   for (const Eigen::VectorXd& position : before) {
-    posterior->to_natural(position, theta, hyper);
+    posterior.to_natural(position, theta, hyper);
     if (!since.place(theta, hyper)) continue;
     for (Contest& contest : contests) trial.run(contest, rng);
   }

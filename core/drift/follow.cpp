@@ -92,9 +92,7 @@ Result<FollowedWindow> follow_window(const std::string& name, const Ground& grou
   window.paths.resize(ground.parameters.size());
   std::vector<int> first(static_cast<std::size_t>(learning));
   std::iota(first.begin(), first.end(), 0);
-  if (const auto learnt = learn(std::move(first)); !learnt) {
-    return tl::unexpected(learnt.error());
-  }
+  TRY(learn(std::move(first)));
   extend(window, sequence);
   const auto months = static_cast<int>(ground.data.month_inputs.rows());
   for (int month = learning; month < months; ++month) {
@@ -140,12 +138,9 @@ Result<FollowedWindow> follow_expanding(const Ground& ground, const FollowOption
       windows().front().name, ground, drift.learning_months, prequential.calibration(), pace,
       [&](std::vector<int> first) { return prequential.learn(std::move(first), proceed); },
       [&](int month) -> Result<MonthTaken> {
-        auto one = prequential.step(month, proceed);
-        if (!one) return tl::unexpected(one.error());
-        drift.record.push_back(std::move(*one));
-        if (auto looked = inquiries.look(drift.record.back()); !looked) {
-          return tl::unexpected(looked.error());
-        }
+        auto one = TRY(prequential.step(month, proceed));
+        drift.record.push_back(std::move(one));
+        TRY(inquiries.look(drift.record.back()));
         return drift.record.back().taken;
       });
   for (std::size_t k = 0; k < drift.outputs.size(); ++k) {
@@ -241,28 +236,25 @@ Result<SiteDrift> follow(const FollowedSite& followed,
                          const calibration::CalibrationProblem& learning,
                          const calibration::DesignRuns& design, SeenBeside beside,
                          const FollowOptions& options, const calibration::RunContext& context) {
-  const auto normalisation =
-      calibration::normalise_design(design.outputs, learning.outputs, followed.learning_months);
-  if (!normalisation) return tl::unexpected(normalisation.error());
+  const auto normalisation = TRY(
+      calibration::normalise_design(design.outputs, learning.outputs, followed.learning_months));
 
   // A posterior that is carried on is evaluated a million times.
-  const auto runs =
-      design::run_model(followed.model, followed.site.parameters, design.theta, context.executor);
-  if (!runs) return tl::unexpected(runs.error());
-  const auto emulator = calibration::emulate(design.theta, *runs, followed.model.output_count(),
-                                             followed.model.month_count());
-  if (!emulator) return tl::unexpected(emulator.error());
+  const auto runs = TRY(
+      design::run_model(followed.model, followed.site.parameters, design.theta, context.executor));
+  const auto emulator = TRY(calibration::emulate(design.theta, runs, followed.model.output_count(),
+                                                 followed.model.month_count()));
 
   const bool is_calibrated =
       std::ranges::any_of(followed.site.outputs, &assessment::OutputCalibration::calibrated);
   SiteDrift drift = drift_of(followed, beside);
   const Ground ground{
-      emulator->model,
+      emulator.model,
       followed.site.parameters,
-      data_of_all(followed, *normalisation, emulator->error_sd),
+      data_of_all(followed, normalisation, emulator.error_sd),
       levels_of(followed),
       calibration::make_hyper_prior(calibration::HyperPriorProfile::scaled,
-                                    is_calibrated ? normalisation->pooled_variance : 1.0),
+                                    is_calibrated ? normalisation.pooled_variance : 1.0),
       // Days and months share the false alarms.
       {std::move(beside.days), drift.months, drift.learning_months,
        2.0 * options.watch.months_between_false_alarms},
@@ -270,9 +262,7 @@ Result<SiteDrift> follow(const FollowedSite& followed,
   if (!has_figures_after(ground, drift.learning_months)) {
     drift.warnings.push_back({"No month after the learning period has a figure to compare."});
   }
-  if (auto done = follow_all(ground, options, context, drift); !done) {
-    return tl::unexpected(done.error());
-  }
+  TRY(follow_all(ground, options, context, drift));
   return drift;
 }
 

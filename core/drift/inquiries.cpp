@@ -69,12 +69,11 @@ Result<void> Inquiries::look(const PrequentialMonth& month) {
     if (auto opened = open(alarm, month.month); !opened) return opened;
   }
   for (std::size_t i = 0; i < open_.size();) {
-    const auto is_over = weigh(open_[i], month.month);
-    if (!is_over) return tl::unexpected(is_over.error());
+    const auto is_over = TRY(weigh(open_[i], month.month));
     if (drift_.alarms[open_[i].alarm].consequence != ExplainedAlarm::Consequence::none) {
       // What was believed before has changed: the others are asked anew if they go on.
       open_.clear();
-    } else if (*is_over) {
+    } else if (is_over) {
       open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(i));
     } else {
       ++i;
@@ -152,9 +151,8 @@ void Inquiries::name_newest(ExplainedAlarm& alarm, std::vector<Cause> causes, in
 
 Result<bool> Inquiries::weigh(Open& open, int month) {
   ExplainedAlarm& alarm = drift_.alarms[open.alarm];
-  auto causes = weigh_causes(case_of(alarm.alarm, month), open.before, options_.causes, seed_);
-  if (!causes) return tl::unexpected(causes.error());
-  alarm.causes = *causes;
+  auto causes = TRY(weigh_causes(case_of(alarm.alarm, month), open.before, options_.causes, seed_));
+  alarm.causes = causes;
   const MeterChange* change = change_of_meter(alarm.alarm, month);
   if (change) {
     blame_meter(alarm, *change);
@@ -168,7 +166,7 @@ Result<bool> Inquiries::weigh(Open& open, int month) {
                                 ? std::max(options_.months_to_act, kMonthsToKnowAUnit)
                                 : options_.months_to_act;
   if (months < months_to_act) {
-    if (!change) name_newest(alarm, std::move(*causes), month);
+    if (!change) name_newest(alarm, std::move(causes), month);
     return false;
   }
   const Cause first = alarm.causes.front();
@@ -183,7 +181,7 @@ Result<bool> Inquiries::weigh(Open& open, int month) {
     alarm.consequence = ExplainedAlarm::Consequence::began_anew;
   } else {
     const bool is_chance = first.kind == CauseKind::nothing && first.probability >= options_.act_at;
-    if (!change) name_newest(alarm, std::move(*causes), month);
+    if (!change) name_newest(alarm, std::move(causes), month);
     return is_chance || months >= kMonthsToAsk;
   }
   if (!done) return tl::unexpected(done.error());

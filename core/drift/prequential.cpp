@@ -39,15 +39,14 @@ Prequential::Prequential(SequentialCalibration calibration, calibration::Posteri
 
 Result<void> Prequential::look_at_points(PrequentialMonth& record) {
   if (!calibration_.has_begun()) return {};
-  const auto forecasts = calibration_.forecast(record.month);
-  if (!forecasts) return tl::unexpected(forecasts.error());
+  const auto forecasts = TRY(calibration_.forecast(record.month));
   std::size_t next = 0;  // forecasts come in the order of the month's points
   for (std::size_t i = 0; i < all_.points.size(); ++i) {
     if (all_.points[i].month != record.month) continue;
     const auto output = static_cast<std::size_t>(all_.points[i].output);
     const calibration::OutputScale& scale = all_.scales[output];
     const double measured = scale.min + scale.range() * all_.values(static_cast<Eigen::Index>(i));
-    const Forecast forecast = in_units((*forecasts)[next++], scale);
+    const Forecast forecast = in_units(forecasts[next++], scale);
     const double level = forecast.mean() / scale.max;
     record.outputs[output] = record_of(spreads_[output].adapt(forecast, level), measured);
     spreads_[output].take(level, standardised_surprise(forecast, measured));
@@ -97,10 +96,8 @@ Result<void> Prequential::set_aside(int output, int since, const std::function<b
 Result<PrequentialMonth> Prequential::step(int month, const std::function<bool()>& proceed) {
   PrequentialMonth record{.month = month, .outputs = {}, .taken = {.month = month}, .alarms = {}};
   record.outputs.resize(all_.scales.size());
-  if (auto looked = look_at_points(record); !looked) return tl::unexpected(looked.error());
-  const auto taken = calibration_.take(month, proceed);
-  if (!taken) return tl::unexpected(taken.error());
-  record.taken = *taken;
+  TRY(look_at_points(record));
+  record.taken = TRY(calibration_.take(month, proceed));
   look_at_levels(record);
   std::vector<std::optional<double>> surprises;
   for (const auto& output : record.outputs) {

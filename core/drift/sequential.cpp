@@ -27,10 +27,9 @@ Result<Eigen::VectorXd> log_likelihoods(Posterior& posterior, const Particles& p
   Eigen::VectorXd position;
   for (Eigen::Index i = 0; i < particles.count(); ++i) {
     position = particles.positions.col(i);
-    const auto density = posterior.log_density(position);
-    if (!density) return tl::unexpected(density.error());
-    values(i) = std::isnan(*density) ? -std::numeric_limits<double>::infinity()
-                                     : *density - particles.log_prior(i);
+    const auto density = TRY(posterior.log_density(position));
+    values(i) = std::isnan(density) ? -std::numeric_limits<double>::infinity()
+                                    : density - particles.log_prior(i);
   }
   return values;
 }
@@ -139,27 +138,26 @@ Result<std::vector<Forecast>> SequentialCalibration::forecast(int month) {
     ahead.push_back(row);
     data.values(row) = 0.0;  // then the residual there is -f, and nobody has looked
   }
-  auto joint = posterior_of(std::move(data));
-  if (!joint) return tl::unexpected(joint.error());
+  auto joint = TRY(posterior_of(std::move(data)));
 
   const auto chosen = spread_over(*particles_, options_.forecast_particles);
   const auto n = static_cast<Eigen::Index>(chosen.size());
   std::vector<Forecast> forecasts(
       ahead.size(), Forecast{Eigen::VectorXd(n), Eigen::VectorXd(n),
                              Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n))});
-  Eigen::VectorXd theta(joint->parameter_count());
-  calibration::Hyperparameters hyper{0.0, 0.0, Eigen::VectorXd(joint->kernel_dimension())};
-  const Eigen::Index m = joint->point_count();
+  Eigen::VectorXd theta(joint.parameter_count());
+  calibration::Hyperparameters hyper{0.0, 0.0, Eigen::VectorXd(joint.kernel_dimension())};
+  const Eigen::Index m = joint.point_count();
   Eigen::MatrixXd precision(m, m);
   for (Eigen::Index k = 0; k < n; ++k) {
-    joint->to_natural(particles_->positions.col(chosen[static_cast<std::size_t>(k)]), theta, hyper);
-    if (!joint->set_hyperparameters(hyper)) {
+    joint.to_natural(particles_->positions.col(chosen[static_cast<std::size_t>(k)]), theta, hyper);
+    if (!joint.set_hyperparameters(hyper)) {
       return failure(ErrorCode::not_positive_definite,
                      "a particle of the posterior has a covariance without a Cholesky factor");
     }
     const Eigen::VectorXd& residual =
-        joint->residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
-    joint->precision(precision);
+        joint.residual_at({theta.data(), static_cast<std::size_t>(theta.size())});
+    joint.precision(precision);
     const auto given = calibration::condition(precision, residual, precision * residual, ahead);
     for (std::size_t i = 0; i < ahead.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
@@ -173,15 +171,15 @@ Result<std::vector<Forecast>> SequentialCalibration::forecast(int month) {
 Result<void> SequentialCalibration::begin_anew(Posterior& posterior, MonthTaken& taken,
                                                const std::function<bool()>& proceed) {
   Rng rng{seed_, streams::kMonths[2 * static_cast<std::uint64_t>(taken.month) + 1]};
-  const auto chain = calibration::smc(posterior, {.iterations = options_.particles, .burn_in = 0},
-                                      rng, [&](int, int) { return !proceed || proceed(); });
-  if (!chain) return tl::unexpected(chain.error());
-  const Eigen::Index count = chain->draws.rows();
-  Particles particles{chain->draws.transpose(), Eigen::VectorXd(count), Eigen::VectorXd(count),
+  const auto chain =
+      TRY(calibration::smc(posterior, {.iterations = options_.particles, .burn_in = 0}, rng,
+                           [&](int, int) { return !proceed || proceed(); }));
+  const Eigen::Index count = chain.draws.rows();
+  Particles particles{chain.draws.transpose(), Eigen::VectorXd(count), Eigen::VectorXd(count),
                       Eigen::VectorXd::Zero(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
     particles.log_prior(i) = posterior.log_prior(particles.positions.col(i));
-    particles.log_likelihood(i) = chain->log_density(i) - particles.log_prior(i);
+    particles.log_likelihood(i) = chain.log_density(i) - particles.log_prior(i);
   }
   particles_ = std::move(particles);
   taken.anew = true;
@@ -205,11 +203,8 @@ Result<MonthTaken> SequentialCalibration::learn_again(const std::function<bool()
     particles_.reset();
     return taken;
   }
-  auto posterior = posterior_of(std::move(data));
-  if (!posterior) return tl::unexpected(posterior.error());
-  if (auto begun = begin_anew(*posterior, taken, proceed); !begun) {
-    return tl::unexpected(begun.error());
-  }
+  auto posterior = TRY(posterior_of(std::move(data)));
+  TRY(begin_anew(posterior, taken, proceed));
   return taken;
 }
 
@@ -246,27 +241,21 @@ Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bo
     particles_.reset();  // a window that has lost its months knows nothing any more
     return remember();
   }
-  auto posterior = posterior_of(std::move(data));
-  if (!posterior) return tl::unexpected(posterior.error());
+  auto posterior = TRY(posterior_of(std::move(data)));
   const auto anew = [&]() -> Result<MonthTaken> {
-    if (auto begun = begin_anew(*posterior, taken, proceed); !begun) {
-      return tl::unexpected(begun.error());
-    }
+    TRY(begin_anew(posterior, taken, proceed));
     return remember();
   };
   if (!particles_) return anew();
 
   Particles carried = *particles_;
   // What was believed before and the new month: how they rise by it is the month's score.
-  auto before = posterior_of(points_seen_from(taken_.back(), month));
-  if (!before) return tl::unexpected(before.error());
-  const auto beside = log_likelihoods(*before, carried);
-  if (!beside) return tl::unexpected(beside.error());
-  taken.log_score = reweight(carried, *beside);
+  auto before = TRY(posterior_of(points_seen_from(taken_.back(), month)));
+  const auto beside = TRY(log_likelihoods(before, carried));
+  taken.log_score = reweight(carried, beside);
   if (forgets()) {
-    const auto after = log_likelihoods(*posterior, carried);
-    if (!after) return tl::unexpected(after.error());
-    reweight(carried, *after);
+    const auto after = TRY(log_likelihoods(posterior, carried));
+    reweight(carried, after);
   }
   taken.effective_share = effective_share(carried);
   const int months_since_anew = months_since_anew_ + 1;
@@ -275,13 +264,11 @@ Result<MonthTaken> SequentialCalibration::take(int month, const std::function<bo
   }
   if (taken.effective_share < options_.effective_share) {
     Rng rng{seed_, streams::kMonths[2 * static_cast<std::uint64_t>(month)]};
-    calibration::ParticleMover mover(*posterior, rng, carried.count(), {});
+    calibration::ParticleMover mover(posterior, rng, carried.count(), {});
     const auto shaped = mover.set_shape(covariance(carried));
     if (!shaped) return anew();  // the population has collapsed
     resample(carried, rng);
-    if (auto moved = mover.move(carried, 1.0, proceed); !moved) {
-      return tl::unexpected(moved.error());
-    }
+    TRY(mover.move(carried, 1.0, proceed));
     taken.moved = true;
     taken.acceptance_rate = mover.acceptance_rate();
     if (taken.acceptance_rate < options_.acceptance_min) return anew();
