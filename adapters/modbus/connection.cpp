@@ -235,9 +235,8 @@ tl::expected<std::vector<std::uint8_t>, ReadFailure> Connection::receive_pdu(std
   const auto deadline = steady_clock::now() + timeout;
   std::vector<std::uint8_t> frame;
   for (;;) {
-    const auto whole = whole_pdu(frame, unit, is_serial());
-    if (!whole) return tl::unexpected(whole.error());
-    if (!whole->empty()) return *whole;
+    const auto whole = TRY(whole_pdu(frame, unit, is_serial()));
+    if (!whole.empty()) return whole;
     const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
     pollfd waiting{descriptor, POLLIN, 0};
     if (left <= milliseconds{0} || ::poll(&waiting, 1, static_cast<int>(left.count())) <= 0) {

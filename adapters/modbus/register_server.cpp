@@ -286,8 +286,7 @@ class RegisterServer::Serving {
 Result<std::unique_ptr<RegisterServer>> RegisterServer::listen(const RegisterServerOptions& options,
                                                                Words registers) {
   assert(registers.size() <= 65'536 && options.connections_max >= 1);
-  auto listener = open_listener(options);
-  if (!listener) return tl::unexpected(listener.error());
+  auto listener = TRY(open_listener(options));
   Descriptor wake{::eventfd(0, EFD_CLOEXEC)};
   modbus_t* const encoder = modbus_new_tcp(nullptr, 0);
   if (wake.number() < 0 || encoder == nullptr) {
@@ -295,7 +294,7 @@ Result<std::unique_ptr<RegisterServer>> RegisterServer::listen(const RegisterSer
     return no_listener(options, std::generic_category().message(errno));
   }
   return std::unique_ptr<RegisterServer>{new RegisterServer{std::make_unique<Serving>(
-      options, std::move(*listener), std::move(wake), encoder, std::move(registers))}};
+      options, std::move(listener), std::move(wake), encoder, std::move(registers))}};
 }
 
 RegisterServer::RegisterServer(std::unique_ptr<Serving> serving) : serving_(std::move(serving)) {}

@@ -156,11 +156,10 @@ tl::expected<DecodedValue, ValueFault> decode(std::span<const std::uint16_t> wor
   // The sentinel is what the device sends, so it is compared before the mask is applied.
   if (format.absent == bits) return tl::unexpected(ValueFault::absent);
   if (format.mask) bits &= *format.mask;
-  const auto raw = interpret(bits, format.type);
-  if (!raw) return tl::unexpected(raw.error());
-  const double value = raw->value * format.scale + format.offset;
+  const auto raw = TRY(interpret(bits, format.type));
+  const double value = raw.value * format.scale + format.offset;
   if (!std::isfinite(value)) return tl::unexpected(ValueFault::not_finite);
-  return DecodedValue{value, raw->step * std::abs(format.scale)};
+  return DecodedValue{value, raw.step * std::abs(format.scale)};
 }
 
 }  // namespace recald::modbus

@@ -10,9 +10,7 @@ using std::chrono::milliseconds;
 
 SunSpecBus::SunSpecBus(std::unique_ptr<Bus> bus,
                        std::map<std::uint8_t, std::vector<std::uint16_t>> wanted)
-    : bus_(std::move(bus)),
-      wanted_(std::move(wanted)),
-      self_(std::make_shared<SunSpecBus*>(this)) {}
+    : bus_(std::move(bus)), wanted_(std::move(wanted)) {}
 
 void SunSpecBus::read(const ReadRequest& request, milliseconds timeout, Done done) {
   const auto wanted = wanted_.find(request.unit);
@@ -32,11 +30,9 @@ void SunSpecBus::read(const ReadRequest& request, milliseconds timeout, Done don
 void SunSpecBus::read_below(const ReadRequest& request, const OrderPtr& order,
                             void (SunSpecBus::*take)(const OrderPtr&, ReadResult, milliseconds)) {
   bus_->read(request, order->timeout,
-             [weak = std::weak_ptr{self_}, order, take](ReadResult result, milliseconds duration) {
-               if (const auto self = weak.lock()) {
-                 ((*self)->*take)(order, std::move(result), duration);
-               }
-             });
+             alive_.guard([this, order, take](ReadResult result, milliseconds duration) {
+               (this->*take)(order, std::move(result), duration);
+             }));
 }
 
 void SunSpecBus::begin_walk(const OrderPtr& order) {

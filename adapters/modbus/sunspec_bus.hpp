@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adapters/modbus/sunspec.hpp"
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/bus.hpp"
 
 namespace recald::modbus {
@@ -49,7 +50,7 @@ class SunSpecBus final : public Bus {
   std::unique_ptr<Bus> bus_;
   std::map<std::uint8_t, std::vector<std::uint16_t>> wanted_;
   std::map<std::uint8_t, SunSpecModel> places_;  ///< By unit, as far as known.
-  std::shared_ptr<SunSpecBus*> self_;            ///< Tells late outcomes whether this still exists.
+  Alive alive_;                                  ///< Tells late outcomes whether this still exists.
 };
 
 }  // namespace recald::modbus
