@@ -13,22 +13,9 @@
 namespace recald::report {
 namespace {
 
-using assessment::MonthRole;
 using nlohmann::json;
 
 json number(double value) { return json_number(value); }
-
-const char* role_text(MonthRole role) {
-  switch (role) {
-    case MonthRole::calibration:
-      return "calibration";
-    case MonthRole::validation:
-      return "validation";
-    case MonthRole::unused:
-      return "unused";
-  }
-  return "unused";
-}
 
 /// Corners of the prior's density, [value, density] each, over all but 0.1 % of an endless tail.
 json curve(const Prior& prior, const display::Unit& unit) {
@@ -90,7 +77,7 @@ json forecast_json(const std::optional<assessment::MonthForecast>& forecast,
 json month_json(const OutputResult& output, const OutputMonth& month) {
   const display::Unit& unit = output.unit();
   return {{"month", month_key(month.figure.month, month.number)},
-          {"role", role_text(month.role)},
+          {"role", name_of(month.role)},
           {"measured", number(unit.shown(measured_of(output, month)))},
           {"usable", month.figure.usable},
           {"filled", json_number(month.figure.filled_share, 4)},

@@ -129,18 +129,6 @@ void write_scores(Html& html, const std::vector<OutputResult>& outputs) {
   table.write(html);
 }
 
-std::string role_word(MonthRole role) {
-  switch (role) {
-    case MonthRole::calibration:
-      return "calibration";
-    case MonthRole::validation:
-      return "validation";
-    case MonthRole::unused:
-      return "not used";
-  }
-  return "";
-}
-
 /// What a month of this output is.
 std::string_view figure_words(const OutputResult& output) {
   if (output.is_peak) return "peak demand";
@@ -154,9 +142,10 @@ Table month_table(const OutputResult& output) {
   table.columns({"Month", "Role", "Measured", "Remark", "Estimated", "Forecast: mean", "5 %",
                  "95 %", "Model: 25 %", "Median", "75 %"});
   for (const OutputMonth& month : output.months) {
-    std::vector<Cell> cells{{month_text(month.figure.month, month.number)},
-                            {role_word(month.role)},
-                            {number_text(unit.shown(measured_of(output, month))), "number"}};
+    std::vector<Cell> cells{
+        {month_text(month.figure.month, month.number)},
+        {month.role == MonthRole::unused ? "not used" : std::string{name_of(month.role)}},
+        {number_text(unit.shown(measured_of(output, month))), "number"}};
     std::string remark = month.figure.usable ? "" : "✕ not usable";
     if (month.flagged_different) remark += remark.empty() ? "◆ different" : ", ◆ different";
     cells.push_back({remark, "nowrap"});

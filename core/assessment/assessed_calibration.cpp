@@ -77,19 +77,16 @@ Result<void> calibrate_into(const MonthlyModel& model,
                             const calibration::CalibrationOptions& options, bool prior_sensitivity,
                             calibration::DesignRuns design, const calibration::RunContext& context,
                             AssessedCalibration& result) {
-  auto calibrated =
-      calibration::calibrate_on_design(model, problem, options, std::move(design), context);
-  if (!calibrated) return tl::unexpected(calibrated.error());
-  result.calibration = std::move(*calibrated);
+  result.calibration =
+      TRY(calibration::calibrate_on_design(model, problem, options, std::move(design), context));
   for (const calibration::Finding& finding : result.calibration.findings) {
     const bool is_alarm = finding.kind == calibration::FindingKind::prior_edge;
     (is_alarm ? result.alarms : result.warnings).push_back(warning_of(finding));
   }
   if (!prior_sensitivity) return {};
   auto sensitivity =
-      calibration::prior_sensitivity(model, problem, options, result.calibration, context);
-  if (!sensitivity) return tl::unexpected(sensitivity.error());
-  result.sensitivity = std::move(*sensitivity);
+      TRY(calibration::prior_sensitivity(model, problem, options, result.calibration, context));
+  result.sensitivity = std::move(sensitivity);
   for (const calibration::Finding& finding : result.sensitivity->findings) {
     result.warnings.push_back(warning_of(finding));
   }
@@ -105,17 +102,15 @@ Result<void> assess(MonthlyModel& whole_model, const WholePeriod& whole,
   const Eigen::VectorXd& mean = result.calibration.posterior_mean;
   const std::vector<double> after =
       evaluate(whole_model, {mean.data(), static_cast<std::size_t>(mean.size())});
-  const auto draws = design::run_model(whole_model, result.parameters,
-                                       result.calibration.thinned.theta, context.executor);
-  if (!draws) return tl::unexpected(draws.error());
+  const auto draws = TRY(design::run_model(whole_model, result.parameters,
+                                           result.calibration.thinned.theta, context.executor));
   scale_followed(result);
-  auto forecasts = forecast_given_data(result, whole, *draws);
-  if (!forecasts) return tl::unexpected(forecasts.error());
+  auto forecasts = TRY(forecast_given_data(result, whole, draws));
 
   const std::size_t n = result.month_names.size();
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     OutputCalibration& output = result.outputs[k];
-    OutputForecasts& forecast = (*forecasts)[k];
+    OutputForecasts& forecast = forecasts[k];
     adapt_to_scatter(result, k, forecast);
     const OutputForecasts* yardstick =
         yardsticks.empty() || !yardsticks[k] ? nullptr : &*yardsticks[k];
@@ -128,13 +123,13 @@ Result<void> assess(MonthlyModel& whole_model, const WholePeriod& whole,
     const auto part = [&](const std::vector<double>& all) {
       return std::span{all}.subspan(k * n, n);
     };
-    output.assessment = assess_output(output.measured, result.roles,
-                                      {.prior_mode = part(at_modes),
-                                       .prior_mean = part(at_means),
-                                       .posterior_mean = part(after),
-                                       .draws = draws->middleCols(static_cast<Eigen::Index>(k * n),
-                                                                  static_cast<Eigen::Index>(n))},
-                                      forecast, result.month_days);
+    output.assessment = assess_output(
+        output.measured, result.roles,
+        {.prior_mode = part(at_modes),
+         .prior_mean = part(at_means),
+         .posterior_mean = part(after),
+         .draws = draws.middleCols(static_cast<Eigen::Index>(k * n), static_cast<Eigen::Index>(n))},
+        forecast, result.month_days);
     output.assessment.model_weight = model_weight;
     output.assessment.by_model = std::move(by_model);
     if (yardstick == nullptr) continue;

@@ -113,13 +113,10 @@ Result<void> predict_with_eta(const MonthlyModel& model, const CalibrationProble
                               const CalibrationProblem& problem, const RunContext& context,
                               AssessedCalibration& result) {
   Calibration& c = result.calibration;
-  const auto posterior = calibration::Posterior::make(
+  const auto posterior = TRY(calibration::Posterior::make(
       model, all.parameters, calibration::normalise_problem(problem, c.normalisation),
-      c.hyper_prior);
-  if (!posterior) return tl::unexpected(posterior.error());
-  auto predictions = calibration::predict_points(*posterior, c.chains, context);
-  if (!predictions) return tl::unexpected(predictions.error());
-  c.predictions = std::move(*predictions);
+      c.hyper_prior));
+  c.predictions = TRY(calibration::predict_points(posterior, c.chains, context));
   return {};
 }
 
@@ -142,13 +139,12 @@ Result<Eigen::MatrixXd> taught_by_months(const MonthlyModel& model,
   }
   CalibrationOptions how = options;
   how.predictive = false;  // whoever asks means the months that teach θ
-  const auto learnt = calibration::calibrate(model, later, how, context);
-  if (!learnt) return tl::unexpected(learnt.error());
+  const auto learnt = TRY(calibration::calibrate(model, later, how, context));
   // Whoever gives a number of draws gets what they find.
-  if (!learnt->converged && !options.sampling.iterations) {
+  if (!learnt.converged && !options.sampling.iterations) {
     return failure(ErrorCode::not_enough_data, "the chains for them alone disagree");
   }
-  return Eigen::MatrixXd{spread_eta(learnt->thinned.theta).rightCols(r)};
+  return Eigen::MatrixXd{spread_eta(learnt.thinned.theta).rightCols(r)};
 }
 
 Result<void> calibrate_given_eta(const MonthlyModel& model, const CalibrationProblem& all,
@@ -159,20 +155,19 @@ Result<void> calibrate_given_eta(const MonthlyModel& model, const CalibrationPro
   const Eigen::RowVectorXd mean = eta.colwise().mean();
   const FixedParametersModel at_mean = with_eta(model, q, {mean.begin(), mean.end()});
   CalibrationProblem problem = theta_alone(all, q);
-  auto design = calibration::run_design(at_mean, problem, options.design_runs, context);
-  if (!design) return tl::unexpected(design.error());
-  set_aside_unresponsive(*design, result, problem);
+  auto design = TRY(calibration::run_design(at_mean, problem, options.design_runs, context));
+  set_aside_unresponsive(design, result, problem);
   CalibrationOptions at_mean_options = options;
   at_mean_options.predictive = false;
   if (auto done = calibrate_into(at_mean, problem, at_mean_options, prior_sensitivity,
-                                 std::move(*design), context, result);
+                                 std::move(design), context, result);
       !done) {
     return done;
   }
   const CutOptions how = cut_options(options.sampling, eta.rows());
-  auto cut = calibration::sample_given_eta(model, result.calibration, problem, eta, how, context);
-  if (!cut) return tl::unexpected(cut.error());
-  take_over(std::move(*cut), how, options, context, result);
+  auto cut =
+      TRY(calibration::sample_given_eta(model, result.calibration, problem, eta, how, context));
+  take_over(std::move(cut), how, options, context, result);
   if (!options.predictive) return {};
   return predict_with_eta(model, all, problem, context, result);
 }

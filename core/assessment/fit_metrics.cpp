@@ -38,25 +38,24 @@ Result<Sums> sum_up(std::span<const double> measured, std::span<const double> si
 Result<FitMetrics> fit_metrics(std::span<const double> measured,
                                std::span<const double> simulated) {
   assert(measured.size() == simulated.size());
-  const auto sums = sum_up(measured, simulated);
-  if (!sums) return tl::unexpected(sums.error());
-  if (sums->n < 2) {
+  const auto sums = TRY(sum_up(measured, simulated));
+  if (sums.n < 2) {
     return failure(ErrorCode::not_enough_data,
                    "NMBE and CV(RMSE) need at least two measured points, but there are " +
-                       std::to_string(sums->n));
+                       std::to_string(sums.n));
   }
-  const double mean = sums->measured / sums->n;
+  const double mean = sums.measured / sums.n;
   if (!(mean > 0.0)) {
     return failure(ErrorCode::invalid_value,
                    "NMBE and CV(RMSE) are relative to the measured mean, which is " +
                        number_text(mean) + " and not positive; check the meter's sign and unit");
   }
-  const double degrees_of_freedom = sums->n - 1;  // n - p, p = 1
-  const double nmbe = sums->excess / (degrees_of_freedom * mean);
+  const double degrees_of_freedom = sums.n - 1;  // n - p, p = 1
+  const double nmbe = sums.excess / (degrees_of_freedom * mean);
   return FitMetrics{.nmbe_sim_minus_meas = nmbe,
                     .nmbe_g14 = -nmbe,
-                    .cvrmse = std::sqrt(sums->squares / degrees_of_freedom) / mean,
-                    .n = sums->n};
+                    .cvrmse = std::sqrt(sums.squares / degrees_of_freedom) / mean,
+                    .n = sums.n};
 }
 
 GuidelineVerdict guideline14_verdict(const FitMetrics& metrics, const GuidelineLimits& limits) {

@@ -358,12 +358,8 @@ Result<std::vector<OutputForecasts>> forecast_given_data(const AssessedCalibrati
   }
   const std::vector<Group> groups = groups_of(result);
   for (const Group& group : groups) {
-    if (auto done = forecast_unseen(result, whole, group, simulated, forecasts); !done) {
-      return tl::unexpected(done.error());
-    }
-    if (auto done = forecast_seen(result, whole, group, simulated, forecasts); !done) {
-      return tl::unexpected(done.error());
-    }
+    TRY(forecast_unseen(result, whole, group, simulated, forecasts));
+    TRY(forecast_seen(result, whole, group, simulated, forecasts));
   }
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {
     if (!groups.empty() && has_errors(result, result.outputs[k])) continue;

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/assessment/box_plot.hpp"
@@ -13,6 +16,10 @@ namespace recald::assessment {
 
 /// What a month is there for. Unused months are shown, never counted.
 enum class MonthRole { calibration, validation, unused };
+[[nodiscard]] constexpr std::string_view name_of(MonthRole role) {
+  constexpr std::array<std::string_view, 3> kNames{"calibration", "validation", "unused"};
+  return kNames[static_cast<std::size_t>(role)];
+}
 
 struct PeriodMetrics {
   std::optional<FitMetrics> calibration;  ///< Absent where fewer than two months are measured.
