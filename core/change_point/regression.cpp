@@ -172,32 +172,31 @@ double Regression::expected_kWh(model::DayType type, double dry_bulb_C) const {
 Result<Regression> fit_regression(std::span<const MeterDay> days) {
   assert(std::ranges::adjacent_find(days, std::ranges::greater_equal{}, &MeterDay::date) ==
          days.end());
-  auto training = collect(days);
-  if (!training) return tl::unexpected(training.error());
-  Regression regression{.days = static_cast<int>(training->days.size()),
-                        .coldest_C = training->coldest_C,
-                        .warmest_C = training->warmest_C,
-                        .no_temperature_because = training->no_temperature_because};
-  for (const TrainingDay& day : training->days) {
+  auto training = TRY(collect(days));
+  Regression regression{.days = static_cast<int>(training.days.size()),
+                        .coldest_C = training.coldest_C,
+                        .warmest_C = training.warmest_C,
+                        .no_temperature_because = training.no_temperature_because};
+  for (const TrainingDay& day : training.days) {
     regression.mean_kWh += std::abs(day.energy_kWh) / regression.days;
   }
-  Selector selector{training->days, training->with_temperature};
+  Selector selector{training.days, training.with_temperature};
   Selection selection;
   FittedDays fitted;
   for (int round = 0; round < kRounds; ++round) {
-    selection = selector.select(training->days);
-    take_fits(selection.choice, selector.fit(training->days, selection.choice), regression);
-    fitted = look_at(training->days, regression);
+    selection = selector.select(training.days);
+    take_fits(selection.choice, selector.fit(training.days, selection.choice), regression);
+    fitted = look_at(training.days, regression);
     double moved = 0.0;
-    for (std::size_t i = 0; i < training->days.size(); ++i) {
+    for (std::size_t i = 0; i < training.days.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const double weight = outlier_weight(fitted.residual_kWh(at) / fitted.sd_kWh(at));
-      moved = std::max(moved, std::abs(weight - training->days[i].weight));
-      training->days[i].weight = weight;
+      moved = std::max(moved, std::abs(weight - training.days[i].weight));
+      training.days[i].weight = weight;
     }
     if (moved < kSettled) break;
   }
-  learn_errors(training->days, selection.left_out_residual_kWh, fitted, regression);
+  learn_errors(training.days, selection.left_out_residual_kWh, fitted, regression);
   return regression;
 }
 

@@ -263,9 +263,8 @@ Result<Parameter> make_parameter(const ParameterDefinition& definition, double d
   const std::string name{definition.name};
   const std::string unit{definition.unit};
   if (prior) {
-    auto physical = physical_prior(definition, *prior);
-    if (!physical) return tl::unexpected(physical.error());
-    return Parameter{name, unit, *physical};
+    auto physical = TRY(physical_prior(definition, *prior));
+    return Parameter{name, unit, physical};
   }
   if (definition.range == RangeKind::relative) {
     if (!(design > 0.0)) {

@@ -198,8 +198,7 @@ double cumulative_of(const LogNormalPrior& p, double value) {
 }  // namespace
 
 Result<Prior> Prior::make(Distribution distribution) {
-  auto valid = std::visit([](const auto& d) { return fault(d); }, distribution);
-  if (!valid) return tl::unexpected(std::move(valid.error()));
+  TRY(std::visit([](const auto& d) { return fault(d); }, distribution));
   return Prior(std::move(distribution));
 }
 

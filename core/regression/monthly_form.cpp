@@ -89,7 +89,7 @@ MonthlyFormOutput fit_output(const MatrixXd& points, const Rows& rows, const Mat
 }  // namespace
 
 Result<MonthlyForm> fit_monthly_form(const DesignData& design) {
-  if (auto good = check_design(design); !good) return tl::unexpected(std::move(good.error()));
+  TRY(check_design(design));
   MonthlyForm form;
   form.parameters = design.parameters;
   form.caps = design.caps;

@@ -97,16 +97,14 @@ Result<MeterFit> fit_by(Criterion criterion, const MeterProblem& problem, const 
   options.start = StepwiseOptions::Start::given;
   options.given_columns = problem.start;
   const CrossProducts total = problem.rows.products();
-  auto fit = stepwise(centre(total), problem.parents, options);
-  if (!fit) return tl::unexpected(std::move(fit.error()));
-  MeterFit result{criterion, std::move(*fit), problem.responses, problem.responses, 0.0};
+  auto fit = TRY(stepwise(centre(total), problem.parents, options));
+  MeterFit result{criterion, std::move(fit), problem.responses, problem.responses, 0.0};
   for (int f = 0; f < folds.count(); ++f) {
     const std::vector<int> out(folds.left_out(f).begin(), folds.left_out(f).end());
     CrossProducts kept = total;
     kept -= problem.rows.products(out);
-    const auto fold_fit = stepwise(centre(kept), problem.parents, options);
-    if (!fold_fit) return tl::unexpected(fold_fit.error());
-    result.left_out(out, Eigen::all) = problem.rows.predict(*fold_fit, out);
+    const auto fold_fit = TRY(stepwise(centre(kept), problem.parents, options));
+    result.left_out(out, Eigen::all) = problem.rows.predict(fold_fit, out);
     result.fitted(out, Eigen::all) = problem.rows.predict(result.fit, out);
   }
   result.left_out_squares = (problem.responses - result.left_out).squaredNorm();
@@ -205,11 +203,9 @@ NamedColumns input_columns(const std::vector<std::string>& inputs,
 }
 
 Result<SeedForm> fit_seed_form(const DesignData& design, const SeedFormOptions& options, Rng& rng) {
-  if (auto good = check_design(design); !good) return tl::unexpected(std::move(good.error()));
+  TRY(check_design(design));
   NamedColumns columns = input_columns(design.inputs, design.month_inputs, options.wind_in_degrees);
-  if (auto good = check_inputs(design, columns); !good) {
-    return tl::unexpected(std::move(good.error()));
-  }
+  TRY(check_inputs(design, columns));
   SeedForm form;
   form.parameters = design.parameters;
   form.parameter_scales = column_scales(design.theta);
@@ -232,11 +228,10 @@ Result<SeedForm> fit_seed_form(const DesignData& design, const SeedFormOptions& 
     if (outputs.existing().size() > 1) variables.emplace_back(kOutputType);
     variables.insert(variables.end(), design.parameters.begin(), design.parameters.end());
     const MeterProblem problem = make_problem(shared, outputs, std::move(variables));
-    const auto fit = fit_meter(shared, problem);
-    if (!fit) return tl::unexpected(fit.error());
-    form.meters.push_back(describe(problem, *fit));
-    scatter(fit->fitted, outputs.existing(), design.month_count(), fitted);
-    scatter(fit->left_out, outputs.existing(), design.month_count(), left_out);
+    const auto fit = TRY(fit_meter(shared, problem));
+    form.meters.push_back(describe(problem, fit));
+    scatter(fit.fitted, outputs.existing(), design.month_count(), fitted);
+    scatter(fit.left_out, outputs.existing(), design.month_count(), left_out);
   }
   form.quality = assess_fit(design, form.output_scales, fitted, left_out);
   return form;

@@ -76,11 +76,10 @@ class Search {
     for (int j = 0; j < count(); ++j) {
       if (swept_.swept(j)) fit.columns.push_back(j);
     }
-    auto solved = fit_least_squares(products_, fit.columns);
-    if (!solved) return tl::unexpected(std::move(solved.error()));
-    fit.coefficients = std::move(solved->coefficients);
-    fit.intercepts = std::move(solved->intercepts);
-    fit.residual_squares = std::move(solved->residual_squares);
+    auto solved = TRY(fit_least_squares(products_, fit.columns));
+    fit.coefficients = std::move(solved.coefficients);
+    fit.intercepts = std::move(solved.intercepts);
+    fit.residual_squares = std::move(solved.residual_squares);
     fit.criterion = criterion(fit.residual_squares.sum(), static_cast<int>(fit.columns.size()));
     fit.steps = steps;
     fit.aliased = std::move(aliased_);

@@ -82,8 +82,7 @@ Result<LassoCrossValidation> cross_validate_lasso(std::span<const CrossProducts>
                    "the outputs do not change with any parameter; there is nothing to select");
   }
   const Eigen::VectorXd penalties = penalty_grid(all, options);
-  auto path = lasso_path(all, penalties, options);
-  if (!path) return tl::unexpected(std::move(path.error()));
+  auto path = TRY(lasso_path(all, penalties, options));
 
   const auto count = static_cast<Eigen::Index>(folds.size());
   Eigen::MatrixXd error(penalties.size(), count);
@@ -93,15 +92,14 @@ Result<LassoCrossValidation> cross_validate_lasso(std::span<const CrossProducts>
     CrossProducts kept = total;
     kept -= fold;
     const StandardisedProducts training(regression::centre(kept));
-    const auto fold_path = lasso_path(training, penalties, options);
-    if (!fold_path) return tl::unexpected(fold_path.error());
+    const auto fold_path = TRY(lasso_path(training, penalties, options));
     const LeftOutError left_out(fold, training);
     for (Eigen::Index i = 0; i < penalties.size(); ++i) {
-      error(i, f) = left_out(fold_path->fits[static_cast<std::size_t>(i)]) / fold.rows;
+      error(i, f) = left_out(fold_path.fits[static_cast<std::size_t>(i)]) / fold.rows;
     }
     weight(f) = fold.rows;
   }
-  LassoCrossValidation result{std::move(*path), {}, {}, 0, 0};
+  LassoCrossValidation result{std::move(path), {}, {}, 0, 0};
   summarise(error, weight, result);
   return result;
 }

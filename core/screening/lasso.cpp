@@ -158,9 +158,8 @@ Result<LassoPath> lasso_path(const StandardisedProducts& products, const Eigen::
   LassoPath path{penalties, {}};
   path.fits.reserve(static_cast<std::size_t>(penalties.size()));
   for (const double penalty : penalties) {
-    auto fit = descent.run(penalty);
-    if (!fit) return tl::unexpected(std::move(fit.error()));
-    path.fits.push_back(std::move(*fit));
+    auto fit = TRY(descent.run(penalty));
+    path.fits.push_back(std::move(fit));
   }
   return path;
 }

@@ -118,13 +118,12 @@ class OutputScreen {
     for (Eigen::Index j = 0; j < columns_.cols(); ++j) {
       if (chosen.selects(j)) selected.push_back(static_cast<int>(j));
     }
-    const auto fit = regression::fit_least_squares(
-        regression::centre(regression::cross_products(columns_, centred)), selected);
-    if (!fit) return tl::unexpected(fit.error());
+    const auto fit = TRY(regression::fit_least_squares(
+        regression::centre(regression::cross_products(columns_, centred)), selected));
     const auto runs = static_cast<double>(columns_.rows());
-    const Eigen::MatrixXd left = centred - columns_(Eigen::all, selected) * fit->coefficients;
+    const Eigen::MatrixXd left = centred - columns_(Eigen::all, selected) * fit.coefficients;
     Eigen::MatrixXd slopes = columns_.transpose() * left / runs;
-    slopes(selected, Eigen::all) = fit->coefficients;
+    slopes(selected, Eigen::all) = fit.coefficients;
 
     const double variance = centred.squaredNorm() / runs;
     std::vector<ParameterEffect> effects;
@@ -179,9 +178,7 @@ std::vector<std::string> Screening::influential() const {
 }
 
 Result<Screening> screen(const DesignData& design, const ScreenOptions& options, Rng& rng) {
-  if (auto good = regression::check_design(design); !good) {
-    return tl::unexpected(std::move(good.error()));
-  }
+  TRY(regression::check_design(design));
   const Eigen::MatrixXd columns = candidate_columns(design.theta);
   const OutputScreen output_screen(columns, options);
   const std::vector<regression::ColumnScale> scales = regression::output_scales(design);
@@ -194,11 +191,11 @@ Result<Screening> screen(const DesignData& design, const ScreenOptions& options,
   for (std::size_t k = 0; k < design.outputs.size(); ++k) {
     const auto output = design.output(static_cast<Eigen::Index>(k));
     const Eigen::MatrixXd normalised = (output.array() - scales[k].min) / scales[k].range();
-    auto result = output_screen.run(design.outputs[k], normalised, scales[k].range(), folds, rng);
-    if (!result) return tl::unexpected(std::move(result.error()));
-    screening.outputs.push_back(std::move(result->output));
-    for (std::size_t j = 0; j < result->effects.size(); ++j) {
-      screening.parameters[j].effects.push_back(result->effects[j]);
+    auto result =
+        TRY(output_screen.run(design.outputs[k], normalised, scales[k].range(), folds, rng));
+    screening.outputs.push_back(std::move(result.output));
+    for (std::size_t j = 0; j < result.effects.size(); ++j) {
+      screening.parameters[j].effects.push_back(result.effects[j]);
     }
   }
   for (ScreenedParameter& parameter : screening.parameters) judge(parameter, options);

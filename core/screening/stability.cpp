@@ -24,10 +24,9 @@ Result<Eigen::MatrixXd> select_on_halves(const Eigen::MatrixXd& x, const Eigen::
     second -= first;
     for (int which = 0; which < 2; ++which) {
       const StandardisedProducts products(regression::centre(which == 0 ? first : second));
-      const auto fit = fit_lasso(products, penalty, lasso);
-      if (!fit) return tl::unexpected(fit.error());
+      const auto fit = TRY(fit_lasso(products, penalty, lasso));
       for (Eigen::Index j = 0; j < x.cols(); ++j) {
-        if (fit->selects(j)) selected(2 * pair + which, j) = 1.0;
+        if (fit.selects(j)) selected(2 * pair + which, j) = 1.0;
       }
     }
   }

@@ -37,18 +37,17 @@ Result<profile::ElectricityProfile> fit_profile_with_fans(
   auto profile = profile::fit_profile(loads, place.holidays, known);
   if (!profile || !building.air) return profile;
   for (int round = 0; round < 2; ++round) {
-    const auto drivers = make_drivers(months, place.calendar, place.holidays, building,
-                                      profile->loads, place.location, place.weather);
-    if (!drivers) return tl::unexpected(drivers.error());
+    const auto drivers = TRY(make_drivers(months, place.calendar, place.holidays, building,
+                                          profile->loads, place.location, place.weather));
     Epc epc{
-        std::make_shared<const ClimateClasses>(make_climate_classes(*drivers, kClassesPerState))};
+        std::make_shared<const ClimateClasses>(make_climate_classes(drivers, kClassesPerState))};
     std::vector<EndUseEnergy> energy(months.size());
     epc.evaluate(building, energy);
     double fans_and_pumps_kWh = 0.0;
     for (const EndUseEnergy& month : energy) {
       fans_and_pumps_kWh += month[EndUse::fans] + month[EndUse::pumps];
     }
-    known.fans_and_pumps_kW = spread_fans_and_pumps(building, *drivers, fans_and_pumps_kWh);
+    known.fans_and_pumps_kW = spread_fans_and_pumps(building, drivers, fans_and_pumps_kWh);
     profile = profile::fit_profile(loads, place.holidays, known);
     if (!profile) return profile;
   }
@@ -58,10 +57,9 @@ Result<profile::ElectricityProfile> fit_profile_with_fans(
 Result<std::shared_ptr<const ClimateClasses>> prepare_climate(
     const std::vector<metering::Month>& months, const Building& building,
     const ElectricLoads& loads, const Place& place) {
-  const auto drivers = make_drivers(months, place.calendar, place.holidays, building, loads,
-                                    place.location, place.weather);
-  if (!drivers) return tl::unexpected(drivers.error());
-  return std::make_shared<const ClimateClasses>(make_climate_classes(*drivers, kClassesPerState));
+  const auto drivers = TRY(make_drivers(months, place.calendar, place.holidays, building, loads,
+                                        place.location, place.weather));
+  return std::make_shared<const ClimateClasses>(make_climate_classes(drivers, kClassesPerState));
 }
 
 }  // namespace recald::model::epc

@@ -92,10 +92,10 @@ Result<profile::ElectricityProfile> fit_profile_without_plant(
   auto profile = profile::fit_profile(loads, place.holidays, known);
   std::vector<profile::HourlyLoad> rest(loads.begin(), loads.end());
   for (int round = 0; profile && round < kRounds; ++round) {
-    auto drivers = make_drivers(months, place.calendar, place.holidays, building, profile->loads,
-                                place.location, place.weather, MissingWeather::assume);
-    if (!drivers) return tl::unexpected(drivers.error());
-    const HourlyMeans plant = plant_electricity(building, std::move(*drivers));
+    auto drivers =
+        TRY(make_drivers(months, place.calendar, place.holidays, building, profile->loads,
+                         place.location, place.weather, MissingWeather::assume));
+    const HourlyMeans plant = plant_electricity(building, std::move(drivers));
     for (std::size_t i = 0; i < rest.size(); ++i) {
       rest[i].mean_kW = loads[i].mean_kW - plant.at({loads[i].date, loads[i].hour});
     }

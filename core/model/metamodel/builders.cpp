@@ -165,9 +165,8 @@ Result<ParsedTerms> parse_terms(const GivenRegression& given,
       parsed.intercept = term.value;
       continue;
     }
-    const auto known = parse_term(term.term, variables);
-    if (!known) return tl::unexpected(known.error());
-    parsed.terms.push_back(*known);
+    const auto known = TRY(parse_term(term.term, variables));
+    parsed.terms.push_back(known);
     parsed.coefficients.push_back(term.value);
   }
   return parsed;
@@ -176,10 +175,9 @@ Result<ParsedTerms> parse_terms(const GivenRegression& given,
 }  // namespace
 
 Result<QuadraticModel> model_of(const regression::SeedForm& form, const MonthInputs& inputs) {
-  const auto picked = pick_inputs(form.inputs, inputs);
-  if (!picked) return tl::unexpected(picked.error());
+  const auto picked = TRY(pick_inputs(form.inputs, inputs));
   const Eigen::MatrixXd scaled = regression::scale_columns(
-      regression::input_columns(form.inputs, *picked, form.wind_in_degrees).values,
+      regression::input_columns(form.inputs, picked, form.wind_in_degrees).values,
       form.input_columns.scales);
   QuadraticCoefficients coefficients(form.parameter_scales, static_cast<int>(form.outputs.size()),
                                      static_cast<int>(scaled.rows()));
@@ -227,16 +225,14 @@ Result<QuadraticModel> model_of(const GivenRegression& given, const MonthInputs&
   std::vector<std::string> variables = given.inputs;
   if (has_type) variables.emplace_back("out");
   variables.insert(variables.end(), given.parameters.begin(), given.parameters.end());
-  const auto parsed = parse_terms(given, variables);
-  if (!parsed) return tl::unexpected(parsed.error());
-  const auto picked = pick_inputs(given.inputs, inputs);
-  if (!picked) return tl::unexpected(picked.error());
+  const auto parsed = TRY(parse_terms(given, variables));
+  const auto picked = TRY(pick_inputs(given.inputs, inputs));
 
   QuadraticCoefficients coefficients(given.parameter_scales,
                                      static_cast<int>(given.output_scales.size()),
-                                     static_cast<int>(picked->rows()));
-  collapse({parsed->intercept, parsed->terms, parsed->coefficients},
-           regression::scale_columns(*picked, given.input_scales),
+                                     static_cast<int>(picked.rows()));
+  collapse({parsed.intercept, parsed.terms, parsed.coefficients},
+           regression::scale_columns(picked, given.input_scales),
            has_type ? std::vector<int>{0, 1} : std::vector<int>{0}, given.output_scales, has_type,
            coefficients);
   return QuadraticModel(coefficients);
