@@ -236,7 +236,7 @@ Result<PagedFile> PagedFile::open(const std::filesystem::path& file) {
                    fmt::format("'{}' cannot be read: {}", file.string(), error.message()));
   }
   paged.pages_ = static_cast<std::uint32_t>((bytes + kPage - 1) / kPage);
-  if (auto read = paged.read_log(); !read) return tl::unexpected(read.error());
+  TRY(paged.read_log());
   return paged;
 }
 

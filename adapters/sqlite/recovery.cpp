@@ -84,23 +84,20 @@ Result<std::optional<fs::path>> first_sound(const std::vector<fs::path>& backups
 /// Copies all tables from one file. @param rows  Receives the number of rows per table.
 Result<void> take_rows(const fs::path& file, Database& to, Recovery& recovery,
                        std::int64_t RecoveredTable::*rows, const OnProgress& on_progress) {
-  const auto from = PagedFile::open(file);
-  if (!from) return tl::unexpected(from.error());
-  const auto salvaged = salvage(*from, to, on_progress);
-  if (!salvaged) return tl::unexpected(salvaged.error());
+  const auto from = TRY(PagedFile::open(file));
+  const auto salvaged = TRY(salvage(from, to, on_progress));
   for (RecoveredTable& table : recovery.tables) {
-    const auto found = salvaged->rows.find(table.name);
-    if (found != salvaged->rows.end()) table.*rows = found->second;
+    const auto found = salvaged.rows.find(table.name);
+    if (found != salvaged.rows.end()) table.*rows = found->second;
   }
-  if (rows == &RecoveredTable::from_damaged) recovery.refused = salvaged->refused;
+  if (rows == &RecoveredTable::from_damaged) recovery.refused = salvaged.refused;
   return {};
 }
 
 Result<void> tell(SqliteStore& store, const Recovery& recovery, metering::Instant now) {
-  const auto time = time_of_event(store.database(), now);
-  if (!time) return tl::unexpected(time.error());
+  const auto time = TRY(time_of_event(store.database(), now));
   const auto told = store.commit(
-      {.events = {{*time, Severity::error, "store_recovered", "", recovery.sentence()}}});
+      {.events = {{time, Severity::error, "store_recovered", "", recovery.sentence()}}});
   return told ? Result<void>{} : tl::unexpected(told.error());
 }
 
@@ -120,10 +117,9 @@ Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
   }
   if (auto mended = mend_references(to); !mended) return mended;
   if (auto on = to.execute("PRAGMA foreign_keys=ON"); !on) return on;
-  const auto refilled = refill_intervals(made);
-  if (!refilled) return tl::unexpected(refilled.error());
-  recovery.from_samples = refilled->from_samples;
-  recovery.lost_intervals = refilled->still_missing;
+  const auto refilled = TRY(refill_intervals(made));
+  recovery.from_samples = refilled.from_samples;
+  recovery.lost_intervals = refilled.still_missing;
   if (auto forgotten = forget_identities(to); !forgotten) return forgotten;
   if (auto told = tell(made, recovery, now); !told) return told;
   // Moves everything into the one file that is renamed.
@@ -135,13 +131,10 @@ Result<void> make_anew(const Places& places, Recovery& recovery,
                        const std::vector<fs::path>& backups, metering::Instant now,
                        const OnProgress& on_progress) {
   remove_store(places.made);  // left by an interrupted recovery
-  auto backup = first_sound(backups, on_progress);
-  if (!backup) return tl::unexpected(backup.error());
-  recovery.backup = std::move(*backup);
+  recovery.backup = TRY(first_sound(backups, on_progress));
   const auto filled = [&]() -> Result<void> {
-    auto made = SqliteStore::open(places.made);
-    if (!made) return tl::unexpected(made.error());
-    return fill(*made, recovery, now, on_progress);
+    auto made = TRY(SqliteStore::open(places.made));
+    return fill(made, recovery, now, on_progress);
   }();
   if (!filled) {
     remove_store(places.made);  // frees space on a disk that may be full
@@ -152,10 +145,9 @@ Result<void> make_anew(const Places& places, Recovery& recovery,
 
 /// Whether an event in the store reports this recovery.
 Result<bool> tells_of(Database& store, const Recovery& recovery) {
-  auto query =
-      store.prepare("SELECT 1 FROM event WHERE kind = 'store_recovered' AND instr(text, ?) > 0");
-  if (!query) return tl::unexpected(query.error());
-  return query->bind(0, std::string_view{recovery.damaged.filename().native()}).step();
+  auto query = TRY(
+      store.prepare("SELECT 1 FROM event WHERE kind = 'store_recovered' AND instr(text, ?) > 0"));
+  return query.bind(0, std::string_view{recovery.damaged.filename().native()}).step();
 }
 
 /// After the rename only the note had to be removed, and the new store reports the recovery. A
@@ -166,9 +158,8 @@ Result<void> close_note(const Places& places, Recovery& recovery, metering::Inst
   // A damaged store is examined after the note is removed.
   if (!store && store.error().code != ErrorCode::malformed) return tl::unexpected(store.error());
   if (store) {
-    const auto tells = tells_of(store->database(), recovery);
-    if (!tells) return tl::unexpected(tells.error());
-    recovery.is_overtaken = !*tells;
+    const auto tells = TRY(tells_of(store->database(), recovery));
+    recovery.is_overtaken = !tells;
     if (recovery.is_overtaken) {
       // It may be an older one.
       if (auto forgotten = forget_identities(store->database()); !forgotten) return forgotten;
@@ -186,31 +177,24 @@ Result<std::optional<Recovery>> recover_if_damaged(const Places& places,
   std::optional<Recovery> overtaken;
   bool is_put_aside = recovery && is_there(recovery->damaged);
   if (is_put_aside && is_there(places.store)) {
-    if (auto closed = close_note(places, *recovery, now); !closed) {
-      return tl::unexpected(closed.error());
-    }
+    TRY(close_note(places, *recovery, now));
     if (recovery->is_overtaken) overtaken = recovery;
     recovery.reset();
     is_put_aside = false;
   }
   if (!recovery) {
-    auto damage = damage_of(places.store, on_progress);
-    if (!damage) return tl::unexpected(damage.error());
-    if (damage->empty()) return overtaken;
+    auto damage = TRY(damage_of(places.store, on_progress));
+    if (damage.empty()) return overtaken;
     recovery = Recovery{
-        .damage = std::move(*damage),
+        .damage = std::move(damage),
         .damaged = free_name(fmt::format("{}.damaged-{}", places.store.string(), stamp_of(now)))};
-    if (auto noted = write_note(places, *recovery); !noted) return tl::unexpected(noted.error());
+    TRY(write_note(places, *recovery));
   }
   if (!is_put_aside) {
-    if (auto put = put_aside(places, recovery->damaged); !put) return tl::unexpected(put.error());
+    TRY(put_aside(places, recovery->damaged));
   }
-  if (auto made = make_anew(places, *recovery, backups, now, on_progress); !made) {
-    return tl::unexpected(made.error());
-  }
-  if (auto removed = system::remove_durably(places.note); !removed) {
-    return tl::unexpected(removed.error());
-  }
+  TRY(make_anew(places, *recovery, backups, now, on_progress));
+  TRY(system::remove_durably(places.note));
   return recovery;
 }
 
@@ -249,14 +233,10 @@ std::string Recovery::sentence() const {
 
 Result<CheckedStore> open_checked(const fs::path& file, const std::vector<fs::path>& backups,
                                   metering::Instant now, const OnProgress& on_progress) {
-  if (auto finished = finish_restoration(file); !finished) {
-    return tl::unexpected(finished.error());
-  }
-  auto recovery = recover_if_damaged(Places{file}, backups, now, on_progress);
-  if (!recovery) return tl::unexpected(recovery.error());
-  auto store = SqliteStore::open(file);
-  if (!store) return tl::unexpected(store.error());
-  return CheckedStore{std::move(*store), std::move(*recovery)};
+  TRY(finish_restoration(file));
+  auto recovery = TRY(recover_if_damaged(Places{file}, backups, now, on_progress));
+  auto store = TRY(SqliteStore::open(file));
+  return CheckedStore{std::move(store), std::move(recovery)};
 }
 
 }  // namespace recald::sqlite

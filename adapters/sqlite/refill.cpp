@@ -21,15 +21,13 @@ struct MeterRow {
 };
 
 Result<std::vector<MeterRow>> meters_of(Database& database) {
-  auto query = database.prepare("SELECT number, interval_s FROM meter ORDER BY number");
-  if (!query) return tl::unexpected(query.error());
+  auto query = TRY(database.prepare("SELECT number, interval_s FROM meter ORDER BY number"));
   std::vector<MeterRow> meters;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return meters;
+    const auto row = TRY(query.step());
+    if (!row) return meters;
     meters.push_back(
-        {static_cast<std::uint32_t>(query->integer(0)), std::chrono::seconds{query->integer(1)}});
+        {static_cast<std::uint32_t>(query.integer(0)), std::chrono::seconds{query.integer(1)}});
   }
 }
 
@@ -40,14 +38,13 @@ Result<std::vector<TimeSpan>> gaps_of(SqliteStore& store, const MeterRow& meter,
                                       std::optional<Instant> first, std::optional<Instant> next) {
   std::vector<TimeSpan> gaps;
   std::optional<Instant> expected = first;
-  const auto read = store.for_each_interval(meter.number, {Instant::min(), Instant::max()},
-                                            [&](const StoredInterval& interval) {
-                                              if (expected && interval.reading.start > *expected) {
-                                                gaps.push_back({*expected, interval.reading.start});
-                                              }
-                                              expected = interval.reading.start + meter.interval;
-                                            });
-  if (!read) return tl::unexpected(read.error());
+  TRY(store.for_each_interval(meter.number, {Instant::min(), Instant::max()},
+                              [&](const StoredInterval& interval) {
+                                if (expected && interval.reading.start > *expected) {
+                                  gaps.push_back({*expected, interval.reading.start});
+                                }
+                                expected = interval.reading.start + meter.interval;
+                              }));
   if (expected && next && *expected < *next) gaps.push_back({*expected, *next});
   return gaps;
 }
@@ -56,10 +53,9 @@ Result<std::vector<TimeSpan>> gaps_of(SqliteStore& store, const MeterRow& meter,
 Result<std::vector<metering::RegisterSample>> samples_of(SqliteStore& store, const MeterRow& meter,
                                                          const RegisterState& state) {
   std::vector<metering::RegisterSample> samples;
-  const auto read = store.for_each_sample(
-      meter.number, state.field,
-      [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
-  if (!read) return tl::unexpected(read.error());
+  TRY(store.for_each_sample(meter.number, state.field, [&](const metering::RegisterSample& sample) {
+    samples.push_back(sample);
+  }));
   // The counter remembers the last sample that it accepted, which may be lost with its interval.
   const metering::RegisterSample& last = state.counter.baseline;
   if (!samples.empty() && samples.back().time < last.time) samples.push_back(last);
@@ -80,14 +76,13 @@ StoreBatch batch_for(std::span<const metering::Reading> readings,
 
 /// The first boundary with a sample before it: no earlier interval can be missing.
 Result<std::optional<Instant>> first_boundary(SqliteStore& store, const MeterRow& meter) {
-  auto query =
-      store.database().prepare("SELECT (min(t) + ?2 - 1) / ?2 * ?2 FROM sample WHERE meter = ?1");
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, static_cast<std::int64_t>(meter.number));
-  query->bind(1, static_cast<std::int64_t>(meter.interval.count()));
-  if (auto row = query->step(); !row) return tl::unexpected(row.error());
-  if (query->is_null(0)) return std::nullopt;
-  return instant_of(query->integer(0));
+  auto query = TRY(
+      store.database().prepare("SELECT (min(t) + ?2 - 1) / ?2 * ?2 FROM sample WHERE meter = ?1"));
+  query.bind(0, static_cast<std::int64_t>(meter.number));
+  query.bind(1, static_cast<std::int64_t>(meter.interval.count()));
+  TRY(query.step());
+  if (query.is_null(0)) return std::nullopt;
+  return instant_of(query.integer(0));
 }
 
 /// Refills one meter and adds up the counts.
@@ -96,18 +91,16 @@ Result<void> refill(SqliteStore& store, const MeterRow& meter, Refilled& refille
   const auto states = store.registers(meter.number);
   const RegisterState* state = states && !states->empty() ? &states->front() : nullptr;
   const auto next = state ? state->book.next : std::nullopt;
-  const auto begin = first_boundary(store, meter);
-  if (!begin) return tl::unexpected(begin.error());
-  auto gaps = gaps_of(store, meter, *begin, next);
+  const auto begin = TRY(first_boundary(store, meter));
+  auto gaps = gaps_of(store, meter, begin, next);
   if (!gaps) return tl::unexpected(gaps.error());
   if (gaps->empty()) return {};
 
   std::vector<metering::Reading> readings;
   if (state != nullptr) {
-    const auto samples = samples_of(store, meter, *state);
-    if (!samples) return tl::unexpected(samples.error());
+    const auto samples = TRY(samples_of(store, meter, *state));
     readings =
-        metering::readings_from_register(meter.number, *samples, meter.interval, state->settings);
+        metering::readings_from_register(meter.number, samples, meter.interval, state->settings);
   }
   // If a meter has lost its first intervals, only the samples show where they began.
   const auto first = readings.empty() ? std::nullopt : std::optional{readings.front().start};
@@ -116,10 +109,9 @@ Result<void> refill(SqliteStore& store, const MeterRow& meter, Refilled& refille
   for (const TimeSpan& gap : *gaps) refilled.still_missing += gap.length() / meter.interval;
   const StoreBatch batch = batch_for(readings, *gaps);
   if (batch.intervals.empty()) return {};
-  const auto counts = store.commit(batch);
-  if (!counts) return tl::unexpected(counts.error());
-  refilled.from_samples += counts->taken;
-  refilled.still_missing -= counts->taken;
+  const auto counts = TRY(store.commit(batch));
+  refilled.from_samples += counts.taken;
+  refilled.still_missing -= counts.taken;
   return {};
 }
 
@@ -127,10 +119,9 @@ Result<void> refill(SqliteStore& store, const MeterRow& meter, Refilled& refille
 
 Result<Refilled> refill_intervals(SqliteStore& store) {
   Refilled refilled;
-  const auto meters = meters_of(store.database());
-  if (!meters) return tl::unexpected(meters.error());
-  for (const MeterRow& meter : *meters) {
-    if (auto done = refill(store, meter, refilled); !done) return tl::unexpected(done.error());
+  const auto meters = TRY(meters_of(store.database()));
+  for (const MeterRow& meter : meters) {
+    TRY(refill(store, meter, refilled));
   }
   return refilled;
 }

@@ -96,16 +96,12 @@ class Restoration final : public StoreRestoration {
       }
       if (on_progress) on_progress();
     }
-    const auto damage = damage_of(copy_, on_progress);
-    if (!damage) return tl::unexpected(damage.error());
-    if (!damage->empty()) return failure(ErrorCode::malformed, "it is damaged: " + *damage);
-    if (auto asked = summary_of(copy_); !asked) return tl::unexpected(asked.error());
-    auto opened = SqliteStore::open(copy_);
-    if (!opened) return tl::unexpected(opened.error());
-    opened_.emplace(std::move(*opened));
-    auto summary = summary_of(opened_->database());
-    if (!summary) return tl::unexpected(summary.error());
-    summary_ = std::move(*summary);
+    const auto damage = TRY(damage_of(copy_, on_progress));
+    if (!damage.empty()) return failure(ErrorCode::malformed, "it is damaged: " + damage);
+    TRY(summary_of(copy_));
+    auto opened = TRY(SqliteStore::open(copy_));
+    opened_.emplace(std::move(opened));
+    summary_ = TRY(summary_of(opened_->database()));
     return {};
   }
 
@@ -113,20 +109,14 @@ class Restoration final : public StoreRestoration {
 
   Result<fs::path> keep(metering::Instant now) override {
     const std::string stamp = free_stamp(now);
-    if (auto told = tell(replaced_name(store_, stamp), now); !told) {
-      return tl::unexpected(told.error());
-    }
-    if (auto set = number_jobs_on(); !set) return tl::unexpected(set.error());
-    auto forgotten = forget_identities(opened_->database());
-    if (!forgotten) return tl::unexpected(forgotten.error());
+    TRY(tell(replaced_name(store_, stamp), now));
+    TRY(number_jobs_on());
+    TRY(forget_identities(opened_->database()));
     // Moves everything into the one file that is renamed.
-    auto moved = opened_->database().execute("PRAGMA wal_checkpoint(TRUNCATE)");
-    if (!moved) return tl::unexpected(moved.error());
+    TRY(opened_->database().execute("PRAGMA wal_checkpoint(TRUNCATE)"));
     opened_.reset();
     system::own_like(copy_, is_there(store_) ? store_ : folder_of(store_));
-    if (auto decided = system::rename_durably(copy_, decided_name(store_, stamp)); !decided) {
-      return tl::unexpected(decided.error());
-    }
+    TRY(system::rename_durably(copy_, decided_name(store_, stamp)));
     return finish_restoration(store_);
   }
 
@@ -147,8 +137,7 @@ class Restoration final : public StoreRestoration {
   }
 
   Result<void> tell(const fs::path& replaced, metering::Instant now) {
-    const auto time = time_of_event(opened_->database(), now);
-    if (!time) return tl::unexpected(time.error());
+    const auto time = TRY(time_of_event(opened_->database(), now));
     std::string text = fmt::format("the store is the backup '{}'", backup_.filename().string());
     if (summary_.newest) {
       text += fmt::format(", whose newest reading is of {}", metering::to_string(*summary_.newest));
@@ -158,7 +147,7 @@ class Restoration final : public StoreRestoration {
           fmt::format("; the store that it replaced is kept as '{}'", replaced.filename().string());
     }
     const auto told =
-        opened_->commit({.events = {{*time, Severity::warning, "store_restored", "", text}}});
+        opened_->commit({.events = {{time, Severity::warning, "store_restored", "", text}}});
     return told ? Result<void>{} : tl::unexpected(told.error());
   }
 
@@ -175,9 +164,7 @@ Result<std::unique_ptr<StoreRestoration>> begin_restoration(const fs::path& stor
                                                             const fs::path& backup,
                                                             const OnProgress& on_progress) {
   auto restoration = std::make_unique<Restoration>(store, backup);
-  if (auto prepared = restoration->prepare(on_progress); !prepared) {
-    return tl::unexpected(prepared.error());
-  }
+  TRY(restoration->prepare(on_progress));
   return restoration;
 }
 
@@ -188,24 +175,20 @@ bool has_unfinished_restoration(const fs::path& store) {
 
 Result<fs::path> finish_restoration(const fs::path& store) {
   if (is_there(copy_of(store))) remove_store(copy_of(store));
-  const auto stamp = decided_stamp(store);
-  if (!stamp) return tl::unexpected(stamp.error());
-  if (stamp->empty()) return fs::path{};
-  const fs::path replaced = replaced_name(store, *stamp);
+  const auto stamp = TRY(decided_stamp(store));
+  if (stamp.empty()) return fs::path{};
+  const fs::path replaced = replaced_name(store, stamp);
   // The old log must be gone before the copy has the store's name, or SQLite would play it into it.
   if (is_there(store.string() + "-wal")) {
-    auto moved = system::rename_durably(store.string() + "-wal", replaced.string() + "-wal");
-    if (!moved) return tl::unexpected(moved.error());
+    TRY(system::rename_durably(store.string() + "-wal", replaced.string() + "-wal"));
   }
   // An unfinished recovery was of the store that is replaced.
   for (const char* left : {"-shm", ".recovery", ".recovering"}) {
     if (!is_there(store.string() + left)) continue;
-    auto removed = system::remove_durably(store.string() + left);
-    if (!removed) return tl::unexpected(removed.error());
+    TRY(system::remove_durably(store.string() + left));
   }
-  if (auto kept = keep_as(store, replaced); !kept) return tl::unexpected(kept.error());
-  auto placed = system::rename_durably(decided_name(store, *stamp), store);
-  if (!placed) return tl::unexpected(placed.error());
+  TRY(keep_as(store, replaced));
+  TRY(system::rename_durably(decided_name(store, stamp), store));
   return is_there(replaced) ? replaced : fs::path{};
 }
 

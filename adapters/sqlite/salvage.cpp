@@ -70,15 +70,13 @@ class RowWriter {
 
   /// @return whether the row was taken; invalid_value if the schema refuses it.
   [[nodiscard]] Result<bool> put(std::span<const Value> values) {
-    auto statement = statement_for(values.size());
-    if (!statement) return tl::unexpected(statement.error());
+    auto statement = TRY(statement_for(values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
-      bind(**statement, static_cast<int>(i), values[i]);
+      bind(*statement, static_cast<int>(i), values[i]);
     }
-    const auto row = (*statement)->step();
-    if (!row) return tl::unexpected(row.error());
-    (*statement)->reset();
-    return *row;
+    const auto row = TRY(statement->step());
+    statement->reset();
+    return row;
   }
 
  private:
@@ -103,25 +101,23 @@ class RowWriter {
     if (const auto known = statements_.find(count); known != statements_.end()) {
       return &known->second;
     }
-    auto names = columns_of(to_, table_.name);
-    if (!names) return tl::unexpected(names.error());
-    names->resize(count);
-    const auto list = fmt::format("{}", fmt::join(*names, ", "));
+    auto names = TRY(columns_of(to_, table_.name));
+    names.resize(count);
+    const auto list = fmt::format("{}", fmt::join(names, ", "));
     std::string sql = fmt::format("INTO {} ({}) VALUES (?{})", table_.name, list,
                                   fmt::join(std::vector<std::string>(count, ""), ", ?"));
     if (table_.newer == nullptr) {
       sql = "INSERT OR IGNORE " + sql;
     } else {
       std::vector<std::string> updates;
-      for (const std::string& name : *names) {
+      for (const std::string& name : names) {
         updates.push_back(fmt::format("{0} = excluded.{0}", name));
       }
       sql = fmt::format("INSERT {} ON CONFLICT DO UPDATE SET {} WHERE {}", sql,
                         fmt::join(updates, ", "), table_.newer);
     }
-    auto statement = to_.prepare(sql + " RETURNING 1");
-    if (!statement) return tl::unexpected(statement.error());
-    return &statements_.emplace(count, std::move(*statement)).first->second;
+    auto statement = TRY(to_.prepare(sql + " RETURNING 1"));
+    return &statements_.emplace(count, std::move(statement)).first->second;
   }
 
   Database& to_;
@@ -163,13 +159,11 @@ class Sorting {
 
 /// Runs a statement until it changes nothing more. @pre it ends with RETURNING.
 Result<void> run_while_it_changes(Database& database, std::string_view sql) {
-  auto statement = database.prepare(sql);
-  if (!statement) return tl::unexpected(statement.error());
+  auto statement = TRY(database.prepare(sql));
   for (;;) {
-    const auto row = statement->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return {};
-    if (auto done = statement->run(); !done) return done;
+    const auto row = TRY(statement.step());
+    if (!row) return {};
+    if (auto done = statement.run(); !done) return done;
   }
 }
 
@@ -179,15 +173,14 @@ Result<SalvagedRows> salvage(const PagedFile& from, Database& to, const OnProgre
   const PageOf page_of = [&](std::uint32_t number) { return from.page(number); };
   Sorting sorting{to};
   for (std::uint32_t first = 1; first <= from.pages(); first += kPagesAtOnce) {
-    const auto copied = to.transaction([&]() -> Result<void> {
+    TRY(to.transaction([&]() -> Result<void> {
       for (std::uint32_t n = first; n < first + kPagesAtOnce && n <= from.pages(); ++n) {
         for (const PageRow& row : rows_on_page(from.page(n), n == 1, page_of)) {
           if (auto put = sorting.put(row); !put) return put;
         }
       }
       return {};
-    });
-    if (!copied) return tl::unexpected(copied.error());
+    }));
     if (on_progress) on_progress();
   }
   return std::move(sorting).done();
