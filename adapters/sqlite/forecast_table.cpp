@@ -47,10 +47,9 @@ void bind_forecast(Statement& insert, const StoredForecast& one) {
 /// Reads the columns in the order of the struct. @return malformed when the month's
 /// name is invalid.
 Result<StoredForecast> read_forecast(const Statement& row) {
-  const auto month = metering::parse_month(row.text(1));
-  if (!month) return tl::unexpected(month.error());
+  const auto month = TRY(metering::parse_month(row.text(1)));
   return StoredForecast{.output = row.text(0),
-                        .month = *month,
+                        .month = month,
                         .revision = static_cast<int>(row.integer(2)),
                         .model_version = row.text(3),
                         .data_revision = row.text(4),
@@ -70,30 +69,26 @@ Result<StoredForecast> read_forecast(const Statement& row) {
 }  // namespace
 
 Result<void> insert_forecasts(Database& database, std::span<const StoredForecast> forecasts) {
-  auto insert = database.prepare(kInsert);
-  if (!insert) return tl::unexpected(insert.error());
+  auto insert = TRY(database.prepare(kInsert));
   for (const StoredForecast& one : forecasts) {
     if (!is_storable(one)) continue;
-    bind_forecast(*insert, one);
-    if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+    bind_forecast(insert, one);
+    TRY(insert.run());
   }
   return {};
 }
 
 Result<std::vector<StoredForecast>> stored_forecasts(Database& database) {
-  auto query = database.prepare(
+  auto query = TRY(database.prepare(
       "SELECT output, month, revision, model_version, data_revision, made, mean, sd, q05, q50, q95,"
       " measured, pit, standardised, log_score, crps FROM forecast"
-      " ORDER BY output, month, revision");
-  if (!query) return tl::unexpected(query.error());
+      " ORDER BY output, month, revision"));
   std::vector<StoredForecast> forecasts;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return forecasts;
-    auto one = read_forecast(*query);
-    if (!one) return tl::unexpected(one.error());
-    forecasts.push_back(std::move(*one));
+    const auto row = TRY(query.step());
+    if (!row) return forecasts;
+    auto one = TRY(read_forecast(query));
+    forecasts.push_back(std::move(one));
   }
 }
 

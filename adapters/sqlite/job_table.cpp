@@ -62,18 +62,16 @@ StoredJob read_job(const Statement& row) {
 Result<std::vector<StoredJob>> read_jobs(Statement& query) {
   std::vector<StoredJob> jobs;
   for (;;) {
-    const auto row = query.step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return jobs;
+    const auto row = TRY(query.step());
+    if (!row) return jobs;
     jobs.push_back(read_job(query));
   }
 }
 
 /// Reads the row of a query for `kColumns` and the result.
 Result<std::optional<StoredJob>> read_whole_job(Statement& query) {
-  const auto row = query.step();
-  if (!row) return tl::unexpected(row.error());
-  if (!*row) return std::optional<StoredJob>{};
+  const auto row = TRY(query.step());
+  if (!row) return std::optional<StoredJob>{};
   StoredJob job = read_job(query);
   job.result = results::read_job_result(query.text(11));
   query.reset();
@@ -83,88 +81,77 @@ Result<std::optional<StoredJob>> read_whole_job(Statement& query) {
 }  // namespace
 
 Result<std::int64_t> insert_job(Database& database, const StoredJob& job) {
-  auto insert = database.prepare(fmt::format(
+  auto insert = TRY(database.prepare(fmt::format(
       "INSERT INTO job VALUES (NULL, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, {}) RETURNING "
       "number",
-      sum_of("job", 11)));
-  if (!insert) return tl::unexpected(insert.error());
-  bind_job(*insert, job);
-  const auto row = insert->step();
-  if (!row) return tl::unexpected(row.error());
-  const std::int64_t number = insert->integer(0);
-  if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+      sum_of("job", 11))));
+  bind_job(insert, job);
+  TRY(insert.step());
+  const std::int64_t number = insert.integer(0);
+  TRY(insert.run());
   return number;
 }
 
 Result<void> update_job(Database& database, const StoredJob& job) {
-  auto update = database.prepare(fmt::format(
+  auto update = TRY(database.prepare(fmt::format(
       "UPDATE job SET kind = ?1, state = ?2, asked_by = ?3, asked = ?4, started = ?5, ended = ?6, "
       "accepted = ?7, message = ?8, folder = ?9, result = ?10, tries = ?11, sum = {} "
       "WHERE number = ?12 RETURNING number",
-      sum_of("job", 11)));
-  if (!update) return tl::unexpected(update.error());
-  bind_job(*update, job);
-  const auto row = update->bind(11, job.number).step();
-  if (!row) return tl::unexpected(row.error());
-  if (!*row) {
+      sum_of("job", 11))));
+  bind_job(update, job);
+  const auto row = TRY(update.bind(11, job.number).step());
+  if (!row) {
     return failure(ErrorCode::not_found, fmt::format("there is no job {}", job.number));
   }
-  return update->run();
+  return update.run();
 }
 
 Result<std::optional<StoredJob>> find_job(Database& database, std::int64_t number) {
   auto query =
-      database.prepare(fmt::format("SELECT {}, result FROM job WHERE number = ?", kColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, number);
-  return read_whole_job(*query);
+      TRY(database.prepare(fmt::format("SELECT {}, result FROM job WHERE number = ?", kColumns)));
+  query.bind(0, number);
+  return read_whole_job(query);
 }
 
 Result<std::vector<StoredJob>> newest_jobs(Database& database, JobKind kind, int limit) {
-  auto query = database.prepare(
-      fmt::format("SELECT {} FROM job WHERE kind = ? ORDER BY number DESC LIMIT ?", kColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{limit});
-  return read_jobs(*query);
+  auto query = TRY(database.prepare(
+      fmt::format("SELECT {} FROM job WHERE kind = ? ORDER BY number DESC LIMIT ?", kColumns)));
+  query.bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{limit});
+  return read_jobs(query);
 }
 
 Result<std::optional<StoredJob>> oldest_finished_job_beyond(Database& database, JobKind kind,
                                                             int kept) {
-  auto query = database.prepare(fmt::format(
+  auto query = TRY(database.prepare(fmt::format(
       "SELECT {} FROM job WHERE kind = ?1 AND ended IS NOT NULL AND number < "
       "(SELECT number FROM job WHERE kind = ?1 AND ended IS NOT NULL ORDER BY number DESC "
       "LIMIT 1 OFFSET ?2 - 1) AND number <> coalesce((SELECT max(number) FROM job WHERE kind = ?1 "
       "AND accepted = 1), 0) ORDER BY number LIMIT 1",
-      kColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{kept});
-  auto jobs = read_jobs(*query);
-  if (!jobs) return tl::unexpected(jobs.error());
-  return jobs->empty() ? std::nullopt : std::optional{std::move(jobs->front())};
+      kColumns)));
+  query.bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{kept});
+  auto jobs = TRY(read_jobs(query));
+  return jobs.empty() ? std::nullopt : std::optional{std::move(jobs.front())};
 }
 
 Result<void> remove_job(Database& database, std::int64_t number) {
-  auto remove = database.prepare("DELETE FROM job WHERE number = ?");
-  if (!remove) return tl::unexpected(remove.error());
-  return remove->bind(0, number).run();
+  auto remove = TRY(database.prepare("DELETE FROM job WHERE number = ?"));
+  return remove.bind(0, number).run();
 }
 
 Result<std::optional<StoredJob>> last_accepted_job(Database& database, JobKind kind) {
   auto query =
-      database.prepare(fmt::format("SELECT {}, result FROM job WHERE kind = ? AND accepted = 1 "
-                                   "ORDER BY number DESC LIMIT 1",
-                                   kColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, static_cast<std::int64_t>(kind));
-  return read_whole_job(*query);
+      TRY(database.prepare(fmt::format("SELECT {}, result FROM job WHERE kind = ? AND accepted = 1 "
+                                       "ORDER BY number DESC LIMIT 1",
+                                       kColumns)));
+  query.bind(0, static_cast<std::int64_t>(kind));
+  return read_whole_job(query);
 }
 
 Result<std::vector<StoredJob>> unfinished_jobs(Database& database) {
-  auto query = database.prepare(
+  auto query = TRY(database.prepare(
       fmt::format("SELECT {} FROM job WHERE state IN ({}, {}) ORDER BY number", kColumns,
-                  static_cast<int>(JobState::waiting), static_cast<int>(JobState::running)));
-  if (!query) return tl::unexpected(query.error());
-  return read_jobs(*query);
+                  static_cast<int>(JobState::waiting), static_cast<int>(JobState::running))));
+  return read_jobs(query);
 }
 
 }  // namespace recald::sqlite

@@ -46,9 +46,8 @@ void bind_month(Statement& insert, std::uint32_t meter, const StoredMonth& month
 
 /// Reads columns as in `kMonthColumns`. @return malformed when the month's name is invalid.
 Result<StoredMonth> read_month(const Statement& row) {
-  const auto month = metering::parse_month(row.text(0));
-  if (!month) return tl::unexpected(month.error());
-  MonthlyFigure figure{.month = *month};
+  const auto month = TRY(metering::parse_month(row.text(0)));
+  MonthlyFigure figure{.month = month};
   figure.revision = static_cast<int>(row.integer(1));
   figure.daily_average_kWh = row.real(2);
   figure.daily_average_variance_kWh2 = row.real(3);
@@ -80,105 +79,82 @@ constexpr auto kMonthColumns =
 Result<int> insert_month(Database& database, std::uint32_t meter, const StoredMonth& month) {
   const std::string name = metering::to_string(month.figure.month);
   return database.transaction([&]() -> Result<int> {
-    auto last = database.prepare(
-        "SELECT coalesce(max(revision), -1) FROM month WHERE meter = ? AND month = ?");
-    if (!last) return tl::unexpected(last.error());
-    const auto row = last->bind(0, std::int64_t{meter}).bind(1, std::string_view{name}).step();
-    if (!row) return tl::unexpected(row.error());
-    const int revision = static_cast<int>(last->integer(0)) + 1;
-    last->reset();
-    auto insert = database.prepare(insert_into("month", 21));
-    if (!insert) return tl::unexpected(insert.error());
-    bind_month(*insert, meter, month, revision);
-    if (auto done = insert->run(); !done) return tl::unexpected(done.error());
-    auto told = database.prepare(insert_outbox_entry());
-    if (!told) return tl::unexpected(told.error());
-    told->bind(0, std::int64_t{meter}).bind_null(1).bind(2, std::string_view{name});
-    if (auto done = told->bind(3, std::int64_t{revision}).run(); !done) {
-      return tl::unexpected(done.error());
-    }
-    auto settled = database.prepare("DELETE FROM reopened WHERE meter = ? AND month = ?");
-    if (!settled) return tl::unexpected(settled.error());
-    settled->bind(0, std::int64_t{meter}).bind(1, std::string_view{name});
-    if (auto done = settled->run(); !done) return tl::unexpected(done.error());
+    auto last = TRY(database.prepare(
+        "SELECT coalesce(max(revision), -1) FROM month WHERE meter = ? AND month = ?"));
+    TRY(last.bind(0, std::int64_t{meter}).bind(1, std::string_view{name}).step());
+    const int revision = static_cast<int>(last.integer(0)) + 1;
+    last.reset();
+    auto insert = TRY(database.prepare(insert_into("month", 21)));
+    bind_month(insert, meter, month, revision);
+    TRY(insert.run());
+    auto told = TRY(database.prepare(insert_outbox_entry()));
+    told.bind(0, std::int64_t{meter}).bind_null(1).bind(2, std::string_view{name});
+    TRY(told.bind(3, std::int64_t{revision}).run());
+    auto settled = TRY(database.prepare("DELETE FROM reopened WHERE meter = ? AND month = ?"));
+    settled.bind(0, std::int64_t{meter}).bind(1, std::string_view{name});
+    TRY(settled.run());
     return revision;
   });
 }
 
 Result<std::optional<StoredMonth>> stored_month(Database& database, std::uint32_t meter,
                                                 const std::string& month, int revision) {
-  auto query = database.prepare(fmt::format(
-      "SELECT {} FROM month WHERE meter = ? AND month = ? AND revision = ?", kMonthColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, std::int64_t{meter}).bind(1, std::string_view{month});
-  const auto row = query->bind(2, std::int64_t{revision}).step();
-  if (!row) return tl::unexpected(row.error());
-  if (!*row) return std::optional<StoredMonth>{};
-  auto read = read_month(*query);
-  if (!read) return tl::unexpected(read.error());
-  return std::optional{std::move(*read)};
+  auto query = TRY(database.prepare(fmt::format(
+      "SELECT {} FROM month WHERE meter = ? AND month = ? AND revision = ?", kMonthColumns)));
+  query.bind(0, std::int64_t{meter}).bind(1, std::string_view{month});
+  const auto row = TRY(query.bind(2, std::int64_t{revision}).step());
+  if (!row) return std::optional<StoredMonth>{};
+  auto read = TRY(read_month(query));
+  return std::optional{std::move(read)};
 }
 
 Result<std::vector<StoredMonth>> stored_months(Database& database, std::uint32_t meter) {
-  auto query = database.prepare(
-      fmt::format("SELECT {} FROM month WHERE meter = ? ORDER BY month, revision", kMonthColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, std::int64_t{meter});
+  auto query = TRY(database.prepare(
+      fmt::format("SELECT {} FROM month WHERE meter = ? ORDER BY month, revision", kMonthColumns)));
+  query.bind(0, std::int64_t{meter});
   std::vector<StoredMonth> months;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return months;
-    auto month = read_month(*query);
-    if (!month) return tl::unexpected(month.error());
-    if (!months.empty() && months.back().figure.month == month->figure.month) months.pop_back();
-    months.push_back(std::move(*month));
+    const auto row = TRY(query.step());
+    if (!row) return months;
+    auto month = TRY(read_month(query));
+    if (!months.empty() && months.back().figure.month == month.figure.month) months.pop_back();
+    months.push_back(std::move(month));
   }
 }
 
 Result<std::vector<MeterMonth>> reopened_months(Database& database) {
-  auto query = database.prepare("SELECT meter, month FROM reopened ORDER BY meter, month");
-  if (!query) return tl::unexpected(query.error());
+  auto query = TRY(database.prepare("SELECT meter, month FROM reopened ORDER BY meter, month"));
   std::vector<MeterMonth> months;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return months;
-    const auto month = metering::parse_month(query->text(1));
-    if (!month) return tl::unexpected(month.error());
-    months.push_back({static_cast<std::uint32_t>(query->integer(0)), *month});
+    const auto row = TRY(query.step());
+    if (!row) return months;
+    const auto month = TRY(metering::parse_month(query.text(1)));
+    months.push_back({static_cast<std::uint32_t>(query.integer(0)), month});
   }
 }
 
 Result<std::string> closing_rules_of(Database& database, std::uint32_t meter) {
-  auto query = database.prepare("SELECT rules FROM closing WHERE meter = ?");
-  if (!query) return tl::unexpected(query.error());
-  const auto row = query->bind(0, std::int64_t{meter}).step();
-  if (!row) return tl::unexpected(row.error());
-  return *row ? query->text(0) : std::string{};
+  auto query = TRY(database.prepare("SELECT rules FROM closing WHERE meter = ?"));
+  const auto row = TRY(query.bind(0, std::int64_t{meter}).step());
+  return row ? query.text(0) : std::string{};
 }
 
 Result<int> replace_closing_rules(Database& database, std::uint32_t meter,
                                   const std::string& rules) {
   return database.transaction([&]() -> Result<int> {
-    const auto known = closing_rules_of(database, meter);
-    if (!known) return tl::unexpected(known.error());
-    if (*known == rules) return 0;
-    auto reopen = database.prepare(
-        "INSERT OR IGNORE INTO reopened SELECT DISTINCT meter, month FROM month WHERE meter = ?");
-    if (!reopen) return tl::unexpected(reopen.error());
-    reopen->bind(0, std::int64_t{meter});
-    if (auto done = reopen->run(); !done) return tl::unexpected(done.error());
-    auto count = database.prepare("SELECT count(DISTINCT month) FROM month WHERE meter = ?");
-    if (!count) return tl::unexpected(count.error());
-    const auto row = count->bind(0, std::int64_t{meter}).step();
-    if (!row) return tl::unexpected(row.error());
-    const auto months = static_cast<int>(count->integer(0));
-    count->reset();
-    auto put = database.prepare("INSERT OR REPLACE INTO closing VALUES (?, ?)");
-    if (!put) return tl::unexpected(put.error());
-    put->bind(0, std::int64_t{meter}).bind(1, std::string_view{rules});
-    if (auto done = put->run(); !done) return tl::unexpected(done.error());
+    const auto known = TRY(closing_rules_of(database, meter));
+    if (known == rules) return 0;
+    auto reopen = TRY(database.prepare(
+        "INSERT OR IGNORE INTO reopened SELECT DISTINCT meter, month FROM month WHERE meter = ?"));
+    reopen.bind(0, std::int64_t{meter});
+    TRY(reopen.run());
+    auto count = TRY(database.prepare("SELECT count(DISTINCT month) FROM month WHERE meter = ?"));
+    TRY(count.bind(0, std::int64_t{meter}).step());
+    const auto months = static_cast<int>(count.integer(0));
+    count.reset();
+    auto put = TRY(database.prepare("INSERT OR REPLACE INTO closing VALUES (?, ?)"));
+    put.bind(0, std::int64_t{meter}).bind(1, std::string_view{rules});
+    TRY(put.run());
     return months;
   });
 }

@@ -20,16 +20,14 @@ constexpr auto kLastNumber =
     "cursor WHERE destination GLOB 'outbox *'))";
 
 Result<std::int64_t> last_number(Database& database) {
-  auto query = database.prepare(fmt::format("SELECT {}", kLastNumber));
-  if (!query) return tl::unexpected(query.error());
-  if (const auto row = query->step(); !row) return tl::unexpected(row.error());
-  return query->integer(0);
+  auto query = TRY(database.prepare(fmt::format("SELECT {}", kLastNumber)));
+  TRY(query.step());
+  return query.integer(0);
 }
 
 Result<void> put_cursor(Database& database, const std::string& destination, std::int64_t position) {
-  auto put = database.prepare(insert_into("cursor", 2, "INSERT OR REPLACE"));
-  if (!put) return tl::unexpected(put.error());
-  return put->bind(0, std::string_view{destination}).bind(1, position).run();
+  auto put = TRY(database.prepare(insert_into("cursor", 2, "INSERT OR REPLACE")));
+  return put.bind(0, std::string_view{destination}).bind(1, position).run();
 }
 
 /// Deletes what every destination has had, and all where there is none.
@@ -40,14 +38,13 @@ Result<void> forget_told(Database& database) {
 }
 
 Result<std::vector<std::string>> kept_cursors(Database& database) {
-  auto query = database.prepare("SELECT destination FROM cursor WHERE destination GLOB 'outbox *'");
-  if (!query) return tl::unexpected(query.error());
+  auto query =
+      TRY(database.prepare("SELECT destination FROM cursor WHERE destination GLOB 'outbox *'"));
   std::vector<std::string> cursors;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return cursors;
-    cursors.push_back(query->text(0));
+    const auto row = TRY(query.step());
+    if (!row) return cursors;
+    cursors.push_back(query.text(0));
   }
 }
 
@@ -62,28 +59,25 @@ std::string insert_outbox_entry() {
 
 Result<void> keep_outbox_for(Database& database, const std::vector<std::string>& destinations) {
   return database.transaction([&]() -> Result<void> {
-    const auto last = last_number(database);
-    if (!last) return tl::unexpected(last.error());
-    const auto kept = kept_cursors(database);
-    if (!kept) return tl::unexpected(kept.error());
+    const auto last = TRY(last_number(database));
+    const auto kept = TRY(kept_cursors(database));
     for (const std::string& destination : destinations) {
       const std::string cursor = std::string{kPrefix} + destination;
-      if (std::ranges::find(*kept, cursor) != kept->end()) continue;
-      if (auto put = put_cursor(database, cursor, *last); !put) return put;
+      if (std::ranges::find(kept, cursor) != kept.end()) continue;
+      if (auto put = put_cursor(database, cursor, last); !put) return put;
     }
     auto forget =
-        database.prepare("DELETE FROM cursor WHERE destination IN (?1, ?2, ?3, ?4, ?5, ?6)");
-    if (!forget) return tl::unexpected(forget.error());
-    for (const std::string& cursor : *kept) {
+        TRY(database.prepare("DELETE FROM cursor WHERE destination IN (?1, ?2, ?3, ?4, ?5, ?6)"));
+    for (const std::string& cursor : kept) {
       const std::string name = cursor.substr(kPrefix.size());
       if (std::ranges::find(destinations, name) != destinations.end()) continue;
       int parameter = 0;
       for (const std::string& of_it :
            {cursor, events_cursor(name), results_cursor(name), history_cursor(name),
             identity_cursor(name), taken_cursor(name)}) {
-        forget->bind(parameter++, std::string_view{of_it});
+        forget.bind(parameter++, std::string_view{of_it});
       }
-      if (auto done = forget->run(); !done) return done;
+      if (auto done = forget.run(); !done) return done;
     }
     return forget_told(database);
   });
@@ -91,32 +85,29 @@ Result<void> keep_outbox_for(Database& database, const std::vector<std::string>&
 
 Result<std::vector<OutboxEntry>> outbox_after(Database& database, std::int64_t number, int limit) {
   // Revisions never change, so an entry is what was stored then, whatever has come since.
-  auto query = database.prepare(fmt::format(
+  auto query = TRY(database.prepare(fmt::format(
       "SELECT i.{}, o.number, o.meter, meter.id, o.month, o.revision, i.t_start IS NOT NULL, "
       "meter.interval_s "
       "FROM outbox AS o JOIN meter ON meter.number = o.meter "
       "LEFT JOIN interval AS i ON i.meter = o.meter AND i.t_start = o.t_start AND "
       "i.revision = o.revision WHERE o.number > ? ORDER BY o.number LIMIT ?",
-      "t_start, i.revision, i.mean_kW, i.validity, i.late, i.reasons"));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, number).bind(1, std::int64_t{limit});
+      "t_start, i.revision, i.mean_kW, i.validity, i.late, i.reasons")));
+  query.bind(0, number).bind(1, std::int64_t{limit});
   std::vector<OutboxEntry> entries;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return entries;
-    OutboxEntry entry{.number = query->integer(6),
-                      .meter = query->text(8),
-                      .interval = std::chrono::seconds{query->integer(12)},
+    const auto row = TRY(query.step());
+    if (!row) return entries;
+    OutboxEntry entry{.number = query.integer(6),
+                      .meter = query.text(8),
+                      .interval = std::chrono::seconds{query.integer(12)},
                       .stored = {}};
-    const auto meter = static_cast<std::uint32_t>(query->integer(7));
-    if (query->integer(11) != 0) {
-      entry.stored = read_interval(*query, meter);
-    } else if (!query->is_null(9)) {
+    const auto meter = static_cast<std::uint32_t>(query.integer(7));
+    if (query.integer(11) != 0) {
+      entry.stored = read_interval(query, meter);
+    } else if (!query.is_null(9)) {
       auto month =
-          stored_month(database, meter, query->text(9), static_cast<int>(query->integer(10)));
-      if (!month) return tl::unexpected(month.error());
-      if (*month) entry.stored = std::move(**month);
+          TRY(stored_month(database, meter, query.text(9), static_cast<int>(query.integer(10))));
+      if (month) entry.stored = std::move(*month);
     }
     // What a damaged store lost leaves its number behind, so that positions go past it.
     entries.push_back(std::move(entry));
@@ -124,14 +115,12 @@ Result<std::vector<OutboxEntry>> outbox_after(Database& database, std::int64_t n
 }
 
 Result<OutboxPosition> outbox_position(Database& database, const std::string& destination) {
-  auto query = database.prepare(
-      fmt::format("SELECT {}, (SELECT position FROM cursor WHERE destination = ?)", kLastNumber));
-  if (!query) return tl::unexpected(query.error());
+  auto query = TRY(database.prepare(
+      fmt::format("SELECT {}, (SELECT position FROM cursor WHERE destination = ?)", kLastNumber)));
   const std::string cursor = std::string{kPrefix} + destination;
-  const auto row = query->bind(0, std::string_view{cursor}).step();
-  if (!row) return tl::unexpected(row.error());
-  const std::int64_t last = query->integer(0);
-  return OutboxPosition{.told = query->is_null(1) ? last : query->integer(1), .last = last};
+  TRY(query.bind(0, std::string_view{cursor}).step());
+  const std::int64_t last = query.integer(0);
+  return OutboxPosition{.told = query.is_null(1) ? last : query.integer(1), .last = last};
 }
 
 Result<void> put_outbox_position(Database& database, const std::string& destination,

@@ -117,15 +117,13 @@ std::string parameters(int count) {
 std::span<const TableShape> table_shapes() { return kShapes; }
 
 Result<std::vector<std::string>> columns_of(Database& database, std::string_view table) {
-  auto query = database.prepare("SELECT name FROM pragma_table_info(?)");
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, table);
+  auto query = TRY(database.prepare("SELECT name FROM pragma_table_info(?)"));
+  query.bind(0, table);
   std::vector<std::string> columns;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return columns;
-    columns.push_back(query->text(0));
+    const auto row = TRY(query.step());
+    if (!row) return columns;
+    columns.push_back(query.text(0));
   }
 }
 
@@ -171,19 +169,16 @@ Result<std::string> wrong_sums(Database& database) {
   std::vector<std::string> found;
   for (const TableShape& table : table_shapes()) {
     if (!table.has_sum()) continue;
-    auto columns = columns_of(database, table.name);
-    if (!columns) return tl::unexpected(columns.error());
+    auto columns = TRY(columns_of(database, table.name));
     // A table of an older schema has no checksums yet.
-    if (columns->size() != table.columns() + 1) continue;
-    columns->pop_back();
-    columns->erase(columns->begin(), columns->begin() + table.summed_from);
-    auto query =
+    if (columns.size() != table.columns() + 1) continue;
+    columns.pop_back();
+    columns.erase(columns.begin(), columns.begin() + table.summed_from);
+    auto query = TRY(
         database.prepare(fmt::format("SELECT count(*) FROM {0} WHERE sum <> row_sum('{0}', {1})",
-                                     table.name, fmt::join(*columns, ", ")));
-    if (!query) return tl::unexpected(query.error());
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    const std::int64_t rows = query->integer(0);
+                                     table.name, fmt::join(columns, ", "))));
+    TRY(query.step());
+    const std::int64_t rows = query.integer(0);
     if (rows > 0) found.push_back(fmt::format("{} of {}", rows, table.name));
   }
   if (found.empty()) return std::string{};
