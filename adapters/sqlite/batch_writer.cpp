@@ -34,21 +34,15 @@ BatchWriter::BatchWriter(BatchWriter&&) noexcept = default;
 BatchWriter& BatchWriter::operator=(BatchWriter&&) noexcept = default;
 
 Result<BatchWriter> BatchWriter::prepare(Database& database) {
-  auto newest = database.prepare("SELECT max(t_start) FROM interval WHERE meter = ?");
-  if (!newest) return tl::unexpected(newest.error());
+  auto newest = TRY(database.prepare("SELECT max(t_start) FROM interval WHERE meter = ?"));
   auto latest =
-      database.prepare(fmt::format("SELECT {} FROM interval WHERE meter = ? AND t_start = ? "
-                                   "ORDER BY revision DESC LIMIT 1",
-                                   kIntervalColumns));
-  if (!latest) return tl::unexpected(latest.error());
-  auto interval = database.prepare(insert_into("interval", 8));
-  if (!interval) return tl::unexpected(interval.error());
-  auto outbox = database.prepare(insert_outbox_entry());
-  if (!outbox) return tl::unexpected(outbox.error());
-  auto state = database.prepare(insert_into("register", 3, "INSERT OR REPLACE"));
-  if (!state) return tl::unexpected(state.error());
-  auto sample = database.prepare(insert_into("sample", 4, "INSERT OR IGNORE"));
-  if (!sample) return tl::unexpected(sample.error());
+      TRY(database.prepare(fmt::format("SELECT {} FROM interval WHERE meter = ? AND t_start = ? "
+                                       "ORDER BY revision DESC LIMIT 1",
+                                       kIntervalColumns)));
+  auto interval = TRY(database.prepare(insert_into("interval", 8)));
+  auto outbox = TRY(database.prepare(insert_outbox_entry()));
+  auto state = TRY(database.prepare(insert_into("register", 3, "INSERT OR REPLACE")));
+  auto sample = TRY(database.prepare(insert_into("sample", 4, "INSERT OR IGNORE")));
   auto event = database.prepare(
       // Beyond what any destination was told: SQLite gives the number of a deleted row again.
       "INSERT INTO event VALUES (1 + max((SELECT coalesce(max(number), 0) FROM event), "
@@ -57,31 +51,27 @@ Result<BatchWriter> BatchWriter::prepare(Database& database) {
       "destination GLOB 'identity for *'))), ?1, ?2, ?3, ?4, ?5, 1, NULL, "
       "row_sum('event', ?1, ?2, ?3, ?4, ?5, 1, NULL))");
   if (!event) return tl::unexpected(event.error());
-  auto count = database.prepare(
+  auto count = TRY(database.prepare(
       "UPDATE event SET count = count + 1, last = ?1, text = ?2, "
       "sum = row_sum('event', t, severity, kind, subject, ?2, count + 1, ?1) "
       "WHERE number = (SELECT max(number) FROM event WHERE kind = ?3 AND subject = ?4 AND t > ?5) "
-      "RETURNING 1");
-  if (!count) return tl::unexpected(count.error());
-  auto reopen = database.prepare("INSERT OR IGNORE INTO reopened VALUES (?, ?)");
-  if (!reopen) return tl::unexpected(reopen.error());
+      "RETURNING 1"));
+  auto reopen = TRY(database.prepare("INSERT OR IGNORE INTO reopened VALUES (?, ?)"));
   return BatchWriter{std::make_unique<Statements>(
-      Statements{std::move(*newest), std::move(*latest), std::move(*interval), std::move(*outbox),
-                 std::move(*state), std::move(*sample), std::move(*event), std::move(*count),
-                 std::move(*reopen)})};
+      Statements{std::move(newest), std::move(latest), std::move(interval), std::move(outbox),
+                 std::move(state), std::move(sample), std::move(*event), std::move(count),
+                 std::move(reopen)})};
 }
 
 Result<CommitCounts> BatchWriter::write(const StoreBatch& batch) {
   CommitCounts counts;
-  if (auto put = put_intervals(batch, counts); !put) return tl::unexpected(put.error());
-  if (auto put = put_registers(batch); !put) return tl::unexpected(put.error());
-  if (auto put = put_samples(batch); !put) return tl::unexpected(put.error());
-  if (auto put = put_events(batch); !put) return tl::unexpected(put.error());
+  TRY(put_intervals(batch, counts));
+  TRY(put_registers(batch));
+  TRY(put_samples(batch));
+  TRY(put_events(batch));
   // Intervals that were already known change no month.
   const bool changes = counts.taken > 0 || batch.intervals.empty();
-  if (auto put = changes ? reopen_months(batch) : Result<void>{}; !put) {
-    return tl::unexpected(put.error());
-  }
+  TRY(changes ? reopen_months(batch) : Result<void>{});
   return counts;
 }
 
@@ -97,9 +87,8 @@ Result<void> BatchWriter::put_intervals(const StoreBatch& batch, CommitCounts& c
 Result<std::optional<StoredInterval>> BatchWriter::latest(std::uint32_t meter,
                                                           metering::Instant start) {
   Statement& query = statements_->latest_interval;
-  const auto row = query.bind(0, std::int64_t{meter}).bind(1, seconds_of(start)).step();
-  if (!row) return tl::unexpected(row.error());
-  if (!*row) return std::optional<StoredInterval>{};
+  const auto row = TRY(query.bind(0, std::int64_t{meter}).bind(1, seconds_of(start)).step());
+  if (!row) return std::optional<StoredInterval>{};
   const StoredInterval found = read_interval(query, meter);
   query.reset();
   return std::optional{found};
@@ -109,8 +98,7 @@ Result<bool> BatchWriter::is_newer_than_all(std::uint32_t meter, metering::Insta
   auto known = newest_.find(meter);
   if (known == newest_.end()) {
     Statement& query = statements_->newest_interval;
-    const auto row = query.bind(0, std::int64_t{meter}).step();
-    if (!row) return tl::unexpected(row.error());
+    TRY(query.bind(0, std::int64_t{meter}).step());
     const auto newest = query.is_null(0) ? metering::Instant::min() : instant_of(query.integer(0));
     query.reset();
     known = newest_.emplace(meter, newest).first;
@@ -124,13 +112,10 @@ Result<void> BatchWriter::put_interval(const StoreBatch::Interval& interval,
                                        const std::optional<std::int64_t>& edit,
                                        CommitCounts& counts) {
   const Reading& reading = interval.reading;
-  const auto is_new = is_newer_than_all(reading.meter, reading.start);
-  if (!is_new) return tl::unexpected(is_new.error());
+  const auto is_new = TRY(is_newer_than_all(reading.meter, reading.start));
   const auto known =
-      *is_new ? Result<std::optional<StoredInterval>>{} : latest(reading.meter, reading.start);
-  if (!known) return tl::unexpected(known.error());
-  const std::optional<Reading> known_reading =
-      *known ? std::optional{(*known)->reading} : std::nullopt;
+      TRY(is_new ? Result<std::optional<StoredInterval>>{} : latest(reading.meter, reading.start));
+  const std::optional<Reading> known_reading = known ? std::optional{known->reading} : std::nullopt;
   switch (metering::place(known_reading, reading, interval.supersedes)) {
     case Placement::duplicate:
       ++counts.duplicates;
@@ -146,7 +131,7 @@ Result<void> BatchWriter::put_interval(const StoreBatch::Interval& interval,
       break;
   }
   ++counts.taken;
-  const std::int64_t revision = *known ? (*known)->revision + 1 : 0;
+  const std::int64_t revision = known ? known->revision + 1 : 0;
   Statement& insert = statements_->insert_interval;
   insert.bind(0, std::int64_t{reading.meter})
       .bind(1, seconds_of(reading.start))
@@ -194,23 +179,21 @@ Result<void> BatchWriter::put_samples(const StoreBatch& batch) {
 /// @return whether the event also happened within the last day.
 Result<bool> BatchWriter::count_event(const StoreEvent& event) {
   Statement& count = statements_->count_event;
-  const auto row = count.bind(0, seconds_of(event.time))
-                       .bind(1, std::string_view{event.text})
-                       .bind(2, std::string_view{event.kind})
-                       .bind(3, std::string_view{event.subject})
-                       .bind(4, seconds_of(event.time - std::chrono::days{1}))
-                       .step();
-  if (!row) return tl::unexpected(row.error());
-  if (!*row) return false;
-  if (auto done = count.run(); !done) return tl::unexpected(done.error());
+  const auto row = TRY(count.bind(0, seconds_of(event.time))
+                           .bind(1, std::string_view{event.text})
+                           .bind(2, std::string_view{event.kind})
+                           .bind(3, std::string_view{event.subject})
+                           .bind(4, seconds_of(event.time - std::chrono::days{1}))
+                           .step());
+  if (!row) return false;
+  TRY(count.run());
   return true;
 }
 
 Result<void> BatchWriter::put_events(const StoreBatch& batch) {
   for (const StoreEvent& event : batch.events) {
-    const auto counted = event.is_counted ? count_event(event) : Result<bool>{false};
-    if (!counted) return tl::unexpected(counted.error());
-    if (*counted) continue;
+    const auto counted = TRY(event.is_counted ? count_event(event) : Result<bool>{false});
+    if (counted) continue;
     const auto put = statements_->insert_event.bind(0, seconds_of(event.time))
                          .bind(1, static_cast<std::int64_t>(event.severity))
                          .bind(2, std::string_view{event.kind})

@@ -104,9 +104,8 @@ Result<bool> Statement::step() {
 
 Result<void> Statement::run() {
   for (;;) {
-    const auto row = step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return {};
+    const auto row = TRY(step());
+    if (!row) return {};
   }
 }
 
@@ -219,8 +218,7 @@ Result<void> Database::run_kept(Handle& kept, std::string_view sql) {
 
 Result<bool> Database::begin() {
   const bool is_part = sqlite3_get_autocommit(impl_->handle.get()) == 0;
-  auto begun = is_part ? execute("SAVEPOINT part") : run_kept(impl_->begin, "BEGIN IMMEDIATE");
-  if (!begun) return tl::unexpected(begun.error());
+  TRY(is_part ? execute("SAVEPOINT part") : run_kept(impl_->begin, "BEGIN IMMEDIATE"));
   return is_part;
 }
 
@@ -235,18 +233,17 @@ void Database::roll_back(bool is_part) {
 }
 
 Result<std::string> Database::quick_check() {
-  auto statement = prepare("PRAGMA quick_check(20)");
-  if (!statement) return tl::unexpected(statement.error());
+  auto statement = TRY(prepare("PRAGMA quick_check(20)"));
   std::string damage;
   for (;;) {
-    const auto row = statement->step();
+    const auto row = statement.step();
     // Some damage aborts the check itself.
     if (!row && row.error().code == ErrorCode::malformed) {
       return damage.empty() ? row.error().message : damage;
     }
     if (!row) return tl::unexpected(row.error());
     if (!*row) return damage;
-    const std::string line = statement->text(0);
+    const std::string line = statement.text(0);
     if (line == "ok") continue;
     if (!damage.empty()) damage += "; ";
     damage += line;

@@ -86,15 +86,14 @@ class Database {
   /// becomes part of that one, and only its own changes are undone on failure.
   template <class Work>
   [[nodiscard]] auto transaction(Work&& work) -> decltype(work()) {
-    const auto is_part = begin();
-    if (!is_part) return tl::unexpected(is_part.error());
+    const auto is_part = TRY(begin());
     auto result = work();
     if (!result) {
-      roll_back(*is_part);
+      roll_back(is_part);
       return result;
     }
-    if (auto committed = finish(*is_part); !committed) {
-      roll_back(*is_part);
+    if (auto committed = finish(is_part); !committed) {
+      roll_back(is_part);
       return tl::unexpected(committed.error());
     }
     return result;

@@ -31,15 +31,13 @@ constexpr std::size_t kListedMax = 20;
 
 Result<void> check_rows(Database& database, const RowCheck& check,
                         std::vector<std::string>& problems) {
-  auto query = database.prepare(check.sql);
-  if (!query) return tl::unexpected(query.error());
+  auto query = TRY(database.prepare(check.sql));
   std::size_t found = 0;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) break;
+    const auto row = TRY(query.step());
+    if (!row) break;
     if (++found > kListedMax) continue;
-    problems.push_back(fmt::format(fmt::runtime(check.sentence), query->text(0), query->text(1)));
+    problems.push_back(fmt::format(fmt::runtime(check.sentence), query.text(0), query.text(1)));
   }
   if (found > kListedMax) {
     problems.push_back(fmt::format("… and {} more like the last one", found - kListedMax));
@@ -52,19 +50,15 @@ Result<void> check_rows(Database& database, const RowCheck& check,
 Result<std::vector<std::string>> row_problems(Database& database) {
   std::vector<std::string> problems;
   for (const RowCheck& check : kRowChecks) {
-    if (auto done = check_rows(database, check, problems); !done) {
-      return tl::unexpected(done.error());
-    }
+    TRY(check_rows(database, check, problems));
   }
   return problems;
 }
 
 Result<std::uint64_t> count_intervals(Database& database) {
-  auto query = database.prepare("SELECT count(*) FROM interval");
-  if (!query) return tl::unexpected(query.error());
-  const auto row = query->step();
-  if (!row) return tl::unexpected(row.error());
-  return static_cast<std::uint64_t>(query->integer(0));
+  auto query = TRY(database.prepare("SELECT count(*) FROM interval"));
+  TRY(query.step());
+  return static_cast<std::uint64_t>(query.integer(0));
 }
 
 }  // namespace recald::sqlite

@@ -179,12 +179,10 @@ CREATE TABLE outbox (
 )sql"};
 
 Result<std::int64_t> ask(Database& database, std::string_view sql) {
-  auto statement = database.prepare(sql);
-  if (!statement) return tl::unexpected(statement.error());
-  const auto row = statement->step();
-  if (!row) return tl::unexpected(row.error());
-  const std::int64_t value = *row ? statement->integer(0) : 0;
-  statement->reset();
+  auto statement = TRY(database.prepare(sql));
+  const auto row = TRY(statement.step());
+  const std::int64_t value = row ? statement.integer(0) : 0;
+  statement.reset();
   return value;
 }
 
@@ -192,30 +190,24 @@ Result<std::int64_t> ask(Database& database, std::string_view sql) {
 using SchemaTexts = std::map<std::string, std::string>;
 
 Result<SchemaTexts> schema_of(Database& database) {
-  auto query = database.prepare(
-      "SELECT type || ' ' || name, tbl_name || ': ' || coalesce(sql, '') FROM sqlite_schema");
-  if (!query) return tl::unexpected(query.error());
+  auto query = TRY(database.prepare(
+      "SELECT type || ' ' || name, tbl_name || ': ' || coalesce(sql, '') FROM sqlite_schema"));
   SchemaTexts texts;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return texts;
-    texts[query->text(0)] = query->text(1);
+    const auto row = TRY(query.step());
+    if (!row) return texts;
+    texts[query.text(0)] = query.text(1);
   }
 }
 
 /// The tables of each version; version 0 has none.
 Result<std::vector<SchemaTexts>> make_known_schemas() {
-  auto database = Database::open(":memory:", {});
-  if (!database) return tl::unexpected(database.error());
+  auto database = TRY(Database::open(":memory:", {}));
   std::vector<SchemaTexts> known{{}};
   for (const char* upgrade : kUpgrades) {
-    if (auto upgraded = database->execute(upgrade); !upgraded) {
-      return tl::unexpected(upgraded.error());
-    }
-    auto texts = schema_of(*database);
-    if (!texts) return tl::unexpected(texts.error());
-    known.push_back(std::move(*texts));
+    TRY(database.execute(upgrade));
+    auto texts = TRY(schema_of(database));
+    known.push_back(std::move(texts));
   }
   return known;
 }
@@ -261,24 +253,21 @@ std::string misfit(int named, int version, const SchemaTexts& file,
 }  // namespace
 
 Result<int> schema_version(Database& database) {
-  const auto header = ask(database, "PRAGMA user_version");
-  if (!header) return tl::unexpected(header.error());
-  const auto named = static_cast<int>(*header);
-  const auto application = ask(database, "PRAGMA application_id");
-  if (!application) return tl::unexpected(application.error());
-  const auto tables = schema_of(database);
-  if (!tables) return tl::unexpected(tables.error());
+  const auto header = TRY(ask(database, "PRAGMA user_version"));
+  const auto named = static_cast<int>(header);
+  const auto application = TRY(ask(database, "PRAGMA application_id"));
+  const auto tables = TRY(schema_of(database));
   const auto& known = known_schemas();
   if (!known) return tl::unexpected(known.error());
-  const int version = version_of(*tables, *known);
-  if (tables->empty() && named == 0) return 0;
-  if (version == 0 && *application != kApplicationId && !has_our_tables(*tables)) {
+  const int version = version_of(tables, *known);
+  if (tables.empty() && named == 0) return 0;
+  if (version == 0 && application != kApplicationId && !has_our_tables(tables)) {
     return failure(ErrorCode::unsupported,
                    "the store file is a database of another program; name another file");
   }
   // A newer version would have other tables. If all tables match a known version but the header has
   // a newer number, the number is damaged.
-  const bool is_known = tables->size() == (*known)[static_cast<std::size_t>(version)].size();
+  const bool is_known = tables.size() == (*known)[static_cast<std::size_t>(version)].size();
   if (named > kSchemaVersion && !is_known) {
     return failure(ErrorCode::unsupported,
                    fmt::format("the store file has schema version {}, but this recald only knows "
@@ -286,15 +275,14 @@ Result<int> schema_version(Database& database) {
                                named, kSchemaVersion));
   }
   if (version != named) {
-    return failure(ErrorCode::malformed, misfit(named, version, *tables, *known));
+    return failure(ErrorCode::malformed, misfit(named, version, tables, *known));
   }
   return version;
 }
 
 Result<void> bring_up_to_date(Database& database, int until) {
-  const auto version = schema_version(database);
-  if (!version) return tl::unexpected(version.error());
-  for (int next = *version; next < until; ++next) {
+  const auto version = TRY(schema_version(database));
+  for (int next = version; next < until; ++next) {
     const std::string text =
         fmt::format("{}PRAGMA application_id={};PRAGMA user_version={};",
                     kUpgrades[static_cast<std::size_t>(next)], kApplicationId, next + 1);
@@ -305,13 +293,12 @@ Result<void> bring_up_to_date(Database& database, int until) {
 }
 
 Result<void> require_current(Database& database) {
-  const auto version = schema_version(database);
-  if (!version) return tl::unexpected(version.error());
-  if (*version == kSchemaVersion) return {};
+  const auto version = TRY(schema_version(database));
+  if (version == kSchemaVersion) return {};
   return failure(ErrorCode::unsupported,
                  fmt::format("the store file has schema version {}, but this recald reads {}; the "
                              "daemon upgrades the file when it starts",
-                             *version, kSchemaVersion));
+                             version, kSchemaVersion));
 }
 
 }  // namespace recald::sqlite

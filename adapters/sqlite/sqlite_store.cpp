@@ -30,9 +30,8 @@ constexpr std::string_view kEventColumns = "number, t, severity, kind, subject, 
 Result<std::vector<StoreEvent>> read_events(Statement& query) {
   std::vector<StoreEvent> events;
   for (;;) {
-    const auto row = query.step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return events;
+    const auto row = TRY(query.step());
+    if (!row) return events;
     events.push_back(
         {.time = instant_of(query.integer(1)),
          .severity = static_cast<Severity>(query.integer(2)),
@@ -52,54 +51,46 @@ SqliteStore::SqliteStore(Database database, std::optional<BatchWriter> writer)
 
 Result<SqliteStore> SqliteStore::open(const std::filesystem::path& file,
                                       const Database::Options& options) {
-  auto database = Database::open(file, options);
-  if (!database) return tl::unexpected(database.error());
+  auto database = TRY(Database::open(file, options));
   if (options.access == Database::Access::read_only) {
-    if (auto current = require_current(*database); !current) return tl::unexpected(current.error());
-    return SqliteStore{std::move(*database), {}};
+    TRY(require_current(database));
+    return SqliteStore{std::move(database), {}};
   }
-  if (auto ready = bring_up_to_date(*database); !ready) return tl::unexpected(ready.error());
-  auto writer = BatchWriter::prepare(*database);
-  if (!writer) return tl::unexpected(writer.error());
-  return SqliteStore{std::move(*database), std::move(*writer)};
+  TRY(bring_up_to_date(database));
+  auto writer = TRY(BatchWriter::prepare(database));
+  return SqliteStore{std::move(database), std::move(writer)};
 }
 
 Result<std::uint32_t> SqliteStore::meter_number(const std::string& id,
                                                 std::chrono::seconds interval) {
   return write([&]() -> Result<std::uint32_t> {
-    auto find = database_.prepare("SELECT number, interval_s FROM meter WHERE id = ?");
-    if (!find) return tl::unexpected(find.error());
-    const auto row = find->bind(0, std::string_view{id}).step();
-    if (!row) return tl::unexpected(row.error());
-    if (*row) {
-      if (find->integer(1) != interval.count()) {
+    auto find = TRY(database_.prepare("SELECT number, interval_s FROM meter WHERE id = ?"));
+    const auto row = TRY(find.bind(0, std::string_view{id}).step());
+    if (row) {
+      if (find.integer(1) != interval.count()) {
         return failure(ErrorCode::unsupported,
                        fmt::format("meter '{}' is stored with intervals of {} s but now has {} s; "
                                    "give it a new id, or its old interval",
-                                   id, find->integer(1), interval.count()));
+                                   id, find.integer(1), interval.count()));
       }
-      return static_cast<std::uint32_t>(find->integer(0));
+      return static_cast<std::uint32_t>(find.integer(0));
     }
-    auto next = database_.prepare("SELECT coalesce(max(number), -1) + 1 FROM meter");
-    if (!next) return tl::unexpected(next.error());
-    if (auto found = next->step(); !found) return tl::unexpected(found.error());
-    const std::int64_t number = next->integer(0);
-    next->reset();
-    auto insert = database_.prepare(insert_into("meter", 3));
-    if (!insert) return tl::unexpected(insert.error());
-    insert->bind(0, number).bind(1, std::string_view{id}).bind(2, interval.count());
-    if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+    auto next = TRY(database_.prepare("SELECT coalesce(max(number), -1) + 1 FROM meter"));
+    TRY(next.step());
+    const std::int64_t number = next.integer(0);
+    next.reset();
+    auto insert = TRY(database_.prepare(insert_into("meter", 3)));
+    insert.bind(0, number).bind(1, std::string_view{id}).bind(2, interval.count());
+    TRY(insert.run());
     return static_cast<std::uint32_t>(number);
   });
 }
 
 Result<std::optional<std::uint32_t>> SqliteStore::find_meter(const std::string& id) {
-  auto find = database_.prepare("SELECT number FROM meter WHERE id = ?");
-  if (!find) return tl::unexpected(find.error());
-  const auto row = find->bind(0, std::string_view{id}).step();
-  if (!row) return tl::unexpected(row.error());
-  if (!*row) return std::optional<std::uint32_t>{};
-  return std::optional{static_cast<std::uint32_t>(find->integer(0))};
+  auto find = TRY(database_.prepare("SELECT number FROM meter WHERE id = ?"));
+  const auto row = TRY(find.bind(0, std::string_view{id}).step());
+  if (!row) return std::optional<std::uint32_t>{};
+  return std::optional{static_cast<std::uint32_t>(find.integer(0))};
 }
 
 Result<CommitCounts> SqliteStore::commit(const StoreBatch& batch) {
@@ -114,18 +105,16 @@ Result<void> SqliteStore::as_one(const std::function<Result<void>()>& work) {
 Result<void> SqliteStore::for_each_interval(
     std::uint32_t meter, const metering::TimeSpan& span,
     const std::function<void(const StoredInterval&)>& visit) {
-  auto query = database_.prepare(
+  auto query = TRY(database_.prepare(
       fmt::format("SELECT {} FROM interval WHERE meter = ? AND t_start >= ? AND t_start < ? "
                   "ORDER BY t_start, revision",
-                  kIntervalColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, std::int64_t{meter}).bind(1, seconds_of(span.begin)).bind(2, seconds_of(span.end));
+                  kIntervalColumns)));
+  query.bind(0, std::int64_t{meter}).bind(1, seconds_of(span.begin)).bind(2, seconds_of(span.end));
   std::optional<StoredInterval> last;  // of its start; a later revision may follow
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) break;
-    const StoredInterval next = read_interval(*query, meter);
+    const auto row = TRY(query.step());
+    if (!row) break;
+    const StoredInterval next = read_interval(query, meter);
     if (last && last->reading.start != next.reading.start) visit(*last);
     last = next;
   }
@@ -135,40 +124,33 @@ Result<void> SqliteStore::for_each_interval(
 
 Result<std::optional<metering::TimeSpan>> SqliteStore::interval_extent(std::uint32_t meter) {
   // Two subqueries take one index step each; a single query for both would read all rows.
-  auto query = database_.prepare(
-      "SELECT (SELECT min(t_start) FROM interval WHERE meter = ?1), "
-      "(SELECT max(t_start) FROM interval WHERE meter = ?1)");
-  if (!query) return tl::unexpected(query.error());
-  const auto row = query->bind(0, std::int64_t{meter}).step();
-  if (!row) return tl::unexpected(row.error());
-  if (!*row || query->is_null(0)) return std::optional<metering::TimeSpan>{};
+  auto query =
+      TRY(database_.prepare("SELECT (SELECT min(t_start) FROM interval WHERE meter = ?1), "
+                            "(SELECT max(t_start) FROM interval WHERE meter = ?1)"));
+  const auto row = TRY(query.bind(0, std::int64_t{meter}).step());
+  if (!row || query.is_null(0)) return std::optional<metering::TimeSpan>{};
   return std::optional{
-      metering::TimeSpan{instant_of(query->integer(0)), instant_of(query->integer(1))}};
+      metering::TimeSpan{instant_of(query.integer(0)), instant_of(query.integer(1))}};
 }
 
 Result<bool> SqliteStore::was_read_in(const metering::TimeSpan& span) {
   // The cross join goes meter by meter, each one step in the index.
-  auto query = database_.prepare(
+  auto query = TRY(database_.prepare(
       "SELECT EXISTS (SELECT 1 FROM meter CROSS JOIN interval ON interval.meter = meter.number "
-      "WHERE t_start >= ? AND t_start < ? AND validity = 0)");
-  if (!query) return tl::unexpected(query.error());
-  const auto row = query->bind(0, seconds_of(span.begin)).bind(1, seconds_of(span.end)).step();
-  if (!row) return tl::unexpected(row.error());
-  return query->integer(0) != 0;
+      "WHERE t_start >= ? AND t_start < ? AND validity = 0)"));
+  TRY(query.bind(0, seconds_of(span.begin)).bind(1, seconds_of(span.end)).step());
+  return query.integer(0) != 0;
 }
 
 Result<std::vector<RegisterState>> SqliteStore::registers(std::uint32_t meter) {
-  auto query = database_.prepare("SELECT state FROM register WHERE meter = ? ORDER BY field");
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, std::int64_t{meter});
+  auto query = TRY(database_.prepare("SELECT state FROM register WHERE meter = ? ORDER BY field"));
+  query.bind(0, std::int64_t{meter});
   std::vector<RegisterState> states;
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return states;
-    auto state = register_from_json(query->text(0));
-    if (!state) return tl::unexpected(state.error());
-    states.push_back(std::move(*state));
+    const auto row = TRY(query.step());
+    if (!row) return states;
+    auto state = TRY(register_from_json(query.text(0)));
+    states.push_back(std::move(state));
   }
 }
 
@@ -214,15 +196,13 @@ Result<int> SqliteStore::put_closing_rules(std::uint32_t meter, const std::strin
 }
 
 Result<int> SqliteStore::delete_events(Instant keep_from, int rows_max) {
-  auto remove = database_.prepare(
+  auto remove = TRY(database_.prepare(
       "DELETE FROM event WHERE number IN (SELECT number FROM event WHERE t < ?1 AND "
-      "coalesce(last, t) < ?1 ORDER BY t LIMIT ?2) RETURNING 1");
-  if (!remove) return tl::unexpected(remove.error());
-  remove->bind(0, seconds_of(keep_from)).bind(1, std::int64_t{rows_max});
+      "coalesce(last, t) < ?1 ORDER BY t LIMIT ?2) RETURNING 1"));
+  remove.bind(0, seconds_of(keep_from)).bind(1, std::int64_t{rows_max});
   for (int removed = 0;; ++removed) {
-    const auto row = remove->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return removed;
+    const auto row = TRY(remove.step());
+    if (!row) return removed;
   }
 }
 
@@ -233,34 +213,29 @@ Result<std::optional<StoredJob>> SqliteStore::oldest_job_beyond(JobKind kind, in
 Result<void> SqliteStore::delete_job(std::int64_t number) { return remove_job(database_, number); }
 
 Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
-  auto query = database_.prepare(
-      fmt::format("SELECT {} FROM event ORDER BY t DESC, number DESC LIMIT ?", kEventColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, std::int64_t{limit});
-  return read_events(*query);
+  auto query = TRY(database_.prepare(
+      fmt::format("SELECT {} FROM event ORDER BY t DESC, number DESC LIMIT ?", kEventColumns)));
+  query.bind(0, std::int64_t{limit});
+  return read_events(query);
 }
 
 Result<std::vector<StoreEvent>> SqliteStore::events_after(std::int64_t number, int limit) {
-  auto query = database_.prepare(
-      fmt::format("SELECT {} FROM event WHERE number > ? ORDER BY number LIMIT ?", kEventColumns));
-  if (!query) return tl::unexpected(query.error());
-  query->bind(0, number).bind(1, std::int64_t{limit});
-  return read_events(*query);
+  auto query = TRY(database_.prepare(
+      fmt::format("SELECT {} FROM event WHERE number > ? ORDER BY number LIMIT ?", kEventColumns)));
+  query.bind(0, number).bind(1, std::int64_t{limit});
+  return read_events(query);
 }
 
 Result<std::optional<std::int64_t>> SqliteStore::cursor(const std::string& destination) {
-  auto query = database_.prepare("SELECT position FROM cursor WHERE destination = ?");
-  if (!query) return tl::unexpected(query.error());
-  const auto row = query->bind(0, std::string_view{destination}).step();
-  if (!row) return tl::unexpected(row.error());
-  return *row ? std::optional{query->integer(0)} : std::nullopt;
+  auto query = TRY(database_.prepare("SELECT position FROM cursor WHERE destination = ?"));
+  const auto row = TRY(query.bind(0, std::string_view{destination}).step());
+  return row ? std::optional{query.integer(0)} : std::nullopt;
 }
 
 Result<void> SqliteStore::put_cursor(const std::string& destination, std::int64_t position) {
   return write([&]() -> Result<void> {
-    auto put = database_.prepare(insert_into("cursor", 2, "INSERT OR REPLACE"));
-    if (!put) return tl::unexpected(put.error());
-    return put->bind(0, std::string_view{destination}).bind(1, position).run();
+    auto put = TRY(database_.prepare(insert_into("cursor", 2, "INSERT OR REPLACE")));
+    return put.bind(0, std::string_view{destination}).bind(1, position).run();
   });
 }
 
@@ -311,23 +286,18 @@ Result<void> SqliteStore::add_forecasts(std::span<const StoredForecast> forecast
 Result<std::vector<StoredForecast>> SqliteStore::forecasts() { return stored_forecasts(database_); }
 
 Result<StoreCheck> SqliteStore::check() {
-  auto damage = database_.quick_check();
-  if (!damage) return tl::unexpected(damage.error());
-  if (!damage->empty()) return StoreCheck{.damage = std::move(*damage)};
-  auto problems = row_problems(database_);
-  if (!problems) return tl::unexpected(problems.error());
-  auto sums = wrong_sums(database_);
-  if (!sums) return tl::unexpected(sums.error());
-  if (!sums->empty()) problems->push_back(std::move(*sums));
-  const auto intervals = count_intervals(database_);
-  if (!intervals) return tl::unexpected(intervals.error());
-  return StoreCheck{.problems = std::move(*problems), .intervals = *intervals};
+  auto damage = TRY(database_.quick_check());
+  if (!damage.empty()) return StoreCheck{.damage = std::move(damage)};
+  auto problems = TRY(row_problems(database_));
+  auto sums = TRY(wrong_sums(database_));
+  if (!sums.empty()) problems.push_back(std::move(sums));
+  const auto intervals = TRY(count_intervals(database_));
+  return StoreCheck{.problems = std::move(problems), .intervals = intervals};
 }
 
 Result<std::unique_ptr<StoreBackup>> SqliteStore::begin_backup(const std::filesystem::path& file) {
-  auto backup = Backup::begin(database_, file);
-  if (!backup) return tl::unexpected(backup.error());
-  return std::make_unique<Backup>(std::move(*backup));
+  auto backup = TRY(Backup::begin(database_, file));
+  return std::make_unique<Backup>(std::move(backup));
 }
 
 }  // namespace recald::sqlite

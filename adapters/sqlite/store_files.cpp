@@ -36,10 +36,9 @@ void remove_store(const fs::path& file) {
 }
 
 Result<metering::Instant> time_of_event(Database& store, metering::Instant now) {
-  auto query = store.prepare("SELECT coalesce(max(t_start), 0) FROM interval");
-  if (!query) return tl::unexpected(query.error());
-  if (auto row = query->step(); !row) return tl::unexpected(row.error());
-  return std::max(now, instant_of(query->integer(0)));
+  auto query = TRY(store.prepare("SELECT coalesce(max(t_start), 0) FROM interval"));
+  TRY(query.step());
+  return std::max(now, instant_of(query.integer(0)));
 }
 
 }  // namespace recald::sqlite

@@ -18,28 +18,24 @@ Result<Database> open_untouched(const std::filesystem::path& file) {
 }
 
 Result<StoreSummary> summary_of(const std::filesystem::path& file) {
-  auto database = open_untouched(file);
-  if (!database) return tl::unexpected(database.error());
-  return summary_of(*database);
+  auto database = TRY(open_untouched(file));
+  return summary_of(database);
 }
 
 Result<StoreSummary> summary_of(Database& database) {
-  const auto version = schema_version(database);
-  if (!version) return tl::unexpected(version.error());
-  if (*version == 0) return failure(ErrorCode::malformed, "the file has no tables");
-  StoreSummary summary{.schema_version = *version};
+  const auto version = TRY(schema_version(database));
+  if (version == 0) return failure(ErrorCode::malformed, "the file has no tables");
+  StoreSummary summary{.schema_version = version};
   // A meter's newest interval is one step in the index.
-  auto query = database.prepare(
+  auto query = TRY(database.prepare(
       "SELECT id, (SELECT max(t_start) FROM interval WHERE meter = number) FROM meter "
-      "ORDER BY number");
-  if (!query) return tl::unexpected(query.error());
+      "ORDER BY number"));
   for (;;) {
-    const auto row = query->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return summary;
-    summary.meters.push_back(query->text(0));
-    if (query->is_null(1)) continue;
-    const metering::Instant newest = instant_of(query->integer(1));
+    const auto row = TRY(query.step());
+    if (!row) return summary;
+    summary.meters.push_back(query.text(0));
+    if (query.is_null(1)) continue;
+    const metering::Instant newest = instant_of(query.integer(1));
     if (!summary.newest || newest > *summary.newest) summary.newest = newest;
   }
 }
