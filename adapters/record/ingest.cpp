@@ -100,7 +100,7 @@ Result<bool> Taking::lock() {
   for (const auto& [name, start] : partitions_of(batch_)) partitions.add(name);
   // Both rows are read as they are once they are locked. What an outbox said before the record
   // heard of it, it said to others.
-  const auto rows = connection_.run(
+  const auto rows = TRY(connection_.run(
       "WITH s AS (UPDATE site SET heard = greatest(heard, $2::timestamptz) "
       "WHERE id = $1 AND retired IS NULL RETURNING number, seq, event_seq) "
       "INSERT INTO source (site, outbox, entries, events, results, begun) "
@@ -113,25 +113,22 @@ Result<bool> Taking::lock() {
       "h.entries >= $8)",
       {site_id_, parameter(now_), integer(batch_.outbox), integer(batch_.after.entries),
        integer(batch_.after.events), integer(batch_.after.results), partitions.parameter(),
-       integer(kHistoryTold)});
-  if (!rows) return tl::unexpected(rows.error());
-  if (rows->size() == 0) return false;
-  site_ = rows->integer(0, 0);
-  known_ = {.entries = rows->integer(0, 1),
-            .events = rows->integer(0, 2),
-            .results = rows->integer(0, 3)};
-  is_new_outbox_ = rows->boolean(0, 4);
-  seq_ = rows->integer(0, 5);
-  event_seq_ = rows->integer(0, 6);
-  has_partitions_ = rows->boolean(0, 7);
-  has_history_ = rows->boolean(0, 8);
+       integer(kHistoryTold)}));
+  if (rows.size() == 0) return false;
+  site_ = rows.integer(0, 0);
+  known_ = {
+      .entries = rows.integer(0, 1), .events = rows.integer(0, 2), .results = rows.integer(0, 3)};
+  is_new_outbox_ = rows.boolean(0, 4);
+  seq_ = rows.integer(0, 5);
+  event_seq_ = rows.integer(0, 6);
+  has_partitions_ = rows.boolean(0, 7);
+  has_history_ = rows.boolean(0, 8);
   return true;
 }
 
 Result<Taking::End> Taking::run() {
-  const auto is_known = lock();
-  if (!is_known) return tl::unexpected(is_known.error());
-  if (!*is_known) {
+  const auto is_known = TRY(lock());
+  if (!is_known) {
     return failure(
         ErrorCode::not_found,
         fmt::format("the record has no site {}: register it with recald fleet add", site_id_));
@@ -177,11 +174,10 @@ Result<void> Taking::find_meters() {
     if (is_new(entry) && !is_lost) wanted.emplace(text_of(entry.meter), entry.interval.count());
   }
   if (wanted.empty()) return {};
-  const auto known =
-      connection_.run("SELECT id, interval_s, number FROM meter WHERE site = $1", {integer(site_)});
-  if (!known) return tl::unexpected(known.error());
-  for (int i = 0; i < known->size(); ++i) {
-    meters_[{std::string{known->text(i, 0)}, known->integer(i, 1)}] = known->integer(i, 2);
+  const auto known = TRY(connection_.run("SELECT id, interval_s, number FROM meter WHERE site = $1",
+                                         {integer(site_)}));
+  for (int i = 0; i < known.size(); ++i) {
+    meters_[{std::string{known.text(i, 0)}, known.integer(i, 1)}] = known.integer(i, 2);
   }
   auto last = static_cast<std::int64_t>(meters_.size());
   Array ids, intervals, numbers;
@@ -252,13 +248,12 @@ Result<void> Taking::put_months() {
     releases.add(text_of(month->time_zone_release));
   }
   if (!has_any) return {};
-  const auto put = connection_.run(
+  TRY(connection_.run(
       "INSERT INTO month (site, meter, month, seq, figure, closed_at, time_zone_release) "
       "SELECT $1, m, o, s, f::jsonb, to_timestamp(c), z FROM unnest($2::smallint[], $3::text[], "
       "$4::bigint[], $5::text[], $6::bigint[], $7::text[]) AS u (m, o, s, f, c, z)",
       {integer(site_), meters.parameter(), months.parameter(), seqs.parameter(),
-       figures.parameter(), closed.parameter(), releases.parameter()});
-  if (!put) return tl::unexpected(put.error());
+       figures.parameter(), closed.parameter(), releases.parameter()}));
   return put_month_jobs();
 }
 
@@ -268,7 +263,7 @@ Result<void> Taking::put_months() {
 /// calculates, whichever month was corrected. A month of which no output can be used changes
 /// nothing. A month that has not ended in any time zone comes from a gateway whose clock is wrong.
 Result<void> Taking::put_month_jobs() {
-  const auto rows = connection_.run(
+  const auto rows = TRY(connection_.run(
       "WITH n AS (SELECT v.number, v.sha256, v.description->>'calibrate_from' AS first_month, "
       "ARRAY(SELECT DISTINCT jsonb_array_elements_text(v.description->'outputs')) AS outputs, "
       "to_char(now() AT TIME ZONE 'UTC' + interval '14 hours', 'YYYY-MM') AS this_month "
@@ -290,23 +285,20 @@ Result<void> Taking::put_month_jobs() {
       "FROM month r WHERE r.site = m.site AND r.meter = m.meter AND r.month = m.month AND "
       "r.seq < m.seq) AND q.figure - '{closed_at,revision}'::text[] = "
       "m.figure - '{closed_at,revision}'::text[]) ORDER BY m.seq",
-      {integer(site_), integer(seq_)});
-  if (!rows) return tl::unexpected(rows.error());
+      {integer(site_), integer(seq_)}));
   std::vector<NewJob> jobs;
-  for (int i = 0; i < rows->size(); ++i) {
-    const auto month = metering::parse_month(rows->text(i, 2));
-    if (!month) return tl::unexpected(month.error());
+  for (int i = 0; i < rows.size(); ++i) {
+    const auto month = TRY(metering::parse_month(rows.text(i, 2)));
     jobs.push_back({.input = {.site = site_id_,
-                              .version_sha256 = std::string{rows->text(i, 1)},
-                              .month = *month,
-                              .until_seq = rows->integer(i, 3),
-                              .now = instant(*rows, i, 4)},
+                              .version_sha256 = std::string{rows.text(i, 1)},
+                              .month = month,
+                              .until_seq = rows.integer(i, 3),
+                              .now = instant(rows, i, 4)},
                     .site = site_,
-                    .version = static_cast<int>(rows->integer(i, 0)),
+                    .version = static_cast<int>(rows.integer(i, 0)),
                     .asked_by = "month"});
   }
-  const auto put = put_jobs(connection_, jobs, IfThere::leave);
-  if (!put) return tl::unexpected(put.error());
+  TRY(put_jobs(connection_, jobs, IfThere::leave));
   return {};
 }
 
@@ -342,15 +334,14 @@ Result<void> Taking::put_results() {
     if (job.number <= known_.results) continue;
     const Instant at = job.ended.value_or(job.asked);
     const std::chrono::year_month_day day{std::chrono::floor<std::chrono::days>(at)};
-    const auto put = connection_.run(
+    TRY(connection_.run(
         "INSERT INTO result (site, kind, month, at, accepted, named, message, summary, sha256) "
         "VALUES ($1, $2, coalesce((SELECT max(month) FROM month WHERE site = $1 AND "
         "month <= $3), $3), $4, $5, false, $6, $7, $8)",
         {integer(site_), std::string{recald::name_of(job.kind)},
          metering::to_string(metering::previous_month(day.year() / day.month())), parameter(at),
          job.accepted ? "true" : "false", text_of(job.message), text_of(job.result.document),
-         sha256_of(job.result.document)});
-    if (!put) return tl::unexpected(put.error());
+         sha256_of(job.result.document)}));
   }
   return {};
 }
@@ -385,9 +376,7 @@ Result<Watermark> take(Connection& connection, const std::string& site, const Re
     auto end = Taking::End::taken;
     const auto done = connection.transaction([&]() -> Result<void> {
       Taking taking{connection, site, batch, now};
-      const auto ended = taking.run();
-      if (!ended) return tl::unexpected(ended.error());
-      end = *ended;
+      end = TRY(taking.run());
       watermark.until = taking.until();
       if (end != Taking::End::taken) return failure(ErrorCode::cancelled, "");  // rolls back
       return {};
@@ -400,27 +389,23 @@ Result<Watermark> take(Connection& connection, const std::string& site, const Re
     }
     has_partitions = true;
     for (const auto& [name, start] : partitions_of(batch)) {
-      if (auto made = make_partitions(connection, {start, start + std::chrono::seconds{1}});
-          !made) {
-        return tl::unexpected(made.error());
-      }
+      TRY(make_partitions(connection, {start, start + std::chrono::seconds{1}}));
     }
   }
 }
 
 Result<std::vector<std::pair<std::string, Watermark>>> watermarks(Connection& connection) {
-  const auto rows = connection.run(
+  const auto rows = TRY(connection.run(
       "SELECT DISTINCT ON (t.id) t.id, coalesce(s.outbox, 0), coalesce(s.entries, 0), "
       "coalesce(s.events, 0), coalesce(s.results, 0) "
       "FROM site t LEFT JOIN source s ON s.site = t.number WHERE t.retired IS NULL "
-      "ORDER BY t.id, s.number DESC NULLS LAST");
-  if (!rows) return tl::unexpected(rows.error());
+      "ORDER BY t.id, s.number DESC NULLS LAST"));
   std::vector<std::pair<std::string, Watermark>> found;
-  for (int i = 0; i < rows->size(); ++i) {
-    found.emplace_back(rows->text(i, 0), Watermark{.outbox = rows->integer(i, 1),
-                                                   .until = {.entries = rows->integer(i, 2),
-                                                             .events = rows->integer(i, 3),
-                                                             .results = rows->integer(i, 4)}});
+  for (int i = 0; i < rows.size(); ++i) {
+    found.emplace_back(rows.text(i, 0), Watermark{.outbox = rows.integer(i, 1),
+                                                  .until = {.entries = rows.integer(i, 2),
+                                                            .events = rows.integer(i, 3),
+                                                            .results = rows.integer(i, 4)}});
   }
   return found;
 }
@@ -436,20 +421,19 @@ struct RecordedMeter {
 /// One of each id: if the same meter came with another interval, the one that came last then.
 Result<std::vector<RecordedMeter>> meters_of(Connection& connection, const std::string& site,
                                              std::int64_t until_seq) {
-  const auto rows = connection.run(
+  const auto rows = TRY(connection.run(
       "SELECT site, number, id, interval_s FROM (SELECT DISTINCT ON (m.id) m.* FROM site s "
       "JOIN meter m ON m.site = s.number WHERE s.id = $1 ORDER BY m.id, "
       "CASE WHEN EXISTS (SELECT 1 FROM meter o WHERE o.site = m.site AND o.id = m.id AND "
       "o.number <> m.number) THEN (SELECT max(i.seq) FROM interval i WHERE i.site = m.site AND "
       "i.meter = m.number AND i.seq <= $2) END DESC NULLS LAST) last ORDER BY number",
-      {site, integer(until_seq)});
-  if (!rows) return tl::unexpected(rows.error());
+      {site, integer(until_seq)}));
   std::vector<RecordedMeter> meters;
-  for (int i = 0; i < rows->size(); ++i) {
-    meters.push_back({.site = rows->integer(i, 0),
-                      .number = rows->integer(i, 1),
-                      .id = std::string{rows->text(i, 2)},
-                      .interval = std::chrono::seconds{rows->integer(i, 3)}});
+  for (int i = 0; i < rows.size(); ++i) {
+    meters.push_back({.site = rows.integer(i, 0),
+                      .number = rows.integer(i, 1),
+                      .id = std::string{rows.text(i, 2)},
+                      .interval = std::chrono::seconds{rows.integer(i, 3)}});
   }
   return meters;
 }
@@ -462,9 +446,7 @@ class IntervalCopy {
   /// Rows in order of start and seq: the last of a start is the one that counts.
   [[nodiscard]] Result<void> add(const postgres::Rows& row) {
     if (!number_) {
-      const auto number = store_.meter_number(meter_.id, meter_.interval);
-      if (!number) return tl::unexpected(number.error());
-      number_ = *number;
+      number_ = TRY(store_.meter_number(meter_.id, meter_.interval));
     }
     const metering::Reading reading{.meter = *number_,
                                     .start = instant(row, 0, 0),
@@ -485,8 +467,7 @@ class IntervalCopy {
   }
   [[nodiscard]] Result<void> commit() {
     if (batch_.empty()) return {};
-    const auto done = store_.commit(batch_);
-    if (!done) return tl::unexpected(done.error());
+    TRY(store_.commit(batch_));
     batch_.intervals.clear();
     return {};
   }
@@ -511,18 +492,13 @@ Result<void> copy_intervals(Store& store, Connection& connection, const Recorded
 
 Result<void> copy_months(Store& store, Connection& connection, const RecordedMeter& meter,
                          std::int64_t until_seq) {
-  const auto rows = connection.run(
+  const auto rows = TRY(connection.run(
       "SELECT figure FROM month WHERE site = $1 AND meter = $2 AND seq <= $3 ORDER BY seq",
-      {integer(meter.site), integer(meter.number), integer(until_seq)});
-  if (!rows) return tl::unexpected(rows.error());
-  for (int i = 0; i < rows->size(); ++i) {
-    const auto number = store.meter_number(meter.id, meter.interval);
-    if (!number) return tl::unexpected(number.error());
-    const auto month = parse_stored_month(rows->text(i, 0));
-    if (!month) return tl::unexpected(month.error());
-    const auto put =
-        store.put_month(*number, month->figure, month->time_zone_release, month->closed_at);
-    if (!put) return tl::unexpected(put.error());
+      {integer(meter.site), integer(meter.number), integer(until_seq)}));
+  for (int i = 0; i < rows.size(); ++i) {
+    const auto number = TRY(store.meter_number(meter.id, meter.interval));
+    const auto month = TRY(parse_stored_month(rows.text(i, 0)));
+    TRY(store.put_month(number, month.figure, month.time_zone_release, month.closed_at));
   }
   return {};
 }
@@ -531,10 +507,9 @@ Result<void> copy_months(Store& store, Connection& connection, const RecordedMet
 
 Result<void> copy_into(Store& store, Connection& connection, const std::string& site,
                        std::int64_t until_seq) {
-  const auto meters = meters_of(connection, site, until_seq);
-  if (!meters) return tl::unexpected(meters.error());
+  const auto meters = TRY(meters_of(connection, site, until_seq));
   return store.as_one([&]() -> Result<void> {
-    for (const RecordedMeter& meter : *meters) {
+    for (const RecordedMeter& meter : meters) {
       if (auto done = copy_intervals(store, connection, meter, until_seq); !done) return done;
       if (auto done = copy_months(store, connection, meter, until_seq); !done) return done;
     }

@@ -203,12 +203,10 @@ constexpr auto kRoles = std::to_array<Role>({
 
 /// 0: there are no tables.
 Result<int> version_of(postgres::Connection& connection) {
-  const auto has_any = connection.run("SELECT to_regclass('fleet') IS NOT NULL");
-  if (!has_any) return tl::unexpected(has_any.error());
-  if (!has_any->boolean(0, 0)) return 0;
-  const auto version = connection.run("SELECT schema_version FROM fleet");
-  if (!version) return tl::unexpected(version.error());
-  return version->size() == 1 ? static_cast<int>(version->integer(0, 0)) : 0;
+  const auto has_any = TRY(connection.run("SELECT to_regclass('fleet') IS NOT NULL"));
+  if (!has_any.boolean(0, 0)) return 0;
+  const auto version = TRY(connection.run("SELECT schema_version FROM fleet"));
+  return version.size() == 1 ? static_cast<int>(version.integer(0, 0)) : 0;
 }
 
 Error newer(int version) {
@@ -221,18 +219,16 @@ Error newer(int version) {
 
 /// Each role by itself: without the right to make one, the others may be there.
 Result<std::string> grant_roles(postgres::Connection& connection) {
-  const auto schema = connection.run("SELECT quote_ident(current_schema())");
-  if (!schema) return tl::unexpected(schema.error());
+  const auto schema = TRY(connection.run("SELECT quote_ident(current_schema())"));
   std::string left_out;
   for (const Role& role : kRoles) {
-    const auto known =
-        connection.run("SELECT EXISTS (SELECT 1 FROM pg_roles WHERE rolname = $1)", {role.name});
-    if (!known) return tl::unexpected(known.error());
+    const auto known = TRY(
+        connection.run("SELECT EXISTS (SELECT 1 FROM pg_roles WHERE rolname = $1)", {role.name}));
     // Two at once would change the same rows of the catalogue.
     const std::string statements =
         fmt::format("SELECT pg_advisory_xact_lock({}); {}{}", kLock,
-                    known->boolean(0, 0) ? "" : fmt::format("CREATE ROLE {}; ", role.name),
-                    fmt::format(fmt::runtime(role.grants), fmt::arg("schema", schema->text(0, 0))));
+                    known.boolean(0, 0) ? "" : fmt::format("CREATE ROLE {}; ", role.name),
+                    fmt::format(fmt::runtime(role.grants), fmt::arg("schema", schema.text(0, 0))));
     const auto done = connection.run_all(statements);
     if (done) continue;
     if (done.error().code != ErrorCode::malformed) return tl::unexpected(done.error());
@@ -245,31 +241,28 @@ Result<std::string> grant_roles(postgres::Connection& connection) {
 }  // namespace
 
 Result<std::string> make_schema(postgres::Connection& connection) {
-  const auto made = connection.transaction([&]() -> Result<void> {
+  TRY(connection.transaction([&]() -> Result<void> {
     if (auto locked = connection.run_all(fmt::format("SELECT pg_advisory_xact_lock({})", kLock));
         !locked) {
       return locked;
     }
-    const auto version = version_of(connection);
-    if (!version) return tl::unexpected(version.error());
-    if (*version > kSchemaVersion) return tl::unexpected(newer(*version));
-    if (*version == kSchemaVersion) return {};
+    const auto version = TRY(version_of(connection));
+    if (version > kSchemaVersion) return tl::unexpected(newer(version));
+    if (version == kSchemaVersion) return {};
     if (auto tables = connection.run_all(kTables); !tables) return tables;
     auto partitions = connection.run_all(fmt::format(fmt::runtime(kPartitions), kLock,
                                                      static_cast<int>(kYear_first),
                                                      static_cast<int>(kYear_last) + 1));
     if (!partitions) return partitions;
     return connection.run_all(fmt::format("INSERT INTO fleet VALUES ({})", kSchemaVersion));
-  });
-  if (!made) return tl::unexpected(made.error());
+  }));
   return grant_roles(connection);
 }
 
 Result<void> check_schema(postgres::Connection& connection) {
-  const auto version = version_of(connection);
-  if (!version) return tl::unexpected(version.error());
-  if (*version == kSchemaVersion) return {};
-  if (*version > kSchemaVersion) return tl::unexpected(newer(*version));
+  const auto version = TRY(version_of(connection));
+  if (version == kSchemaVersion) return {};
+  if (version > kSchemaVersion) return tl::unexpected(newer(version));
   return failure(ErrorCode::unsupported,
                  "the database has no record of a fleet yet: make it with recald fleet init");
 }
