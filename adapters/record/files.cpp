@@ -17,17 +17,14 @@ constexpr std::string_view kScriptEnd = "</script>";
 constexpr std::size_t kLongScript = 64 * 1024;
 
 Result<bool> has_file(Connection& connection, const std::string& sum) {
-  const auto known = connection.run("SELECT 1 FROM file WHERE sha256 = $1", {sum});
-  if (!known) return tl::unexpected(known.error());
-  return known->size() > 0;
+  const auto known = TRY(connection.run("SELECT 1 FROM file WHERE sha256 = $1", {sum}));
+  return known.size() > 0;
 }
 
 /// @param bytes  Nothing: it is kept in parts.
 Result<void> put_row(Connection& connection, const std::string& sum,
                      const postgres::Parameter& bytes) {
-  const auto put =
-      connection.run("INSERT INTO file VALUES ($1, $2) ON CONFLICT DO NOTHING", {sum, bytes});
-  if (!put) return tl::unexpected(put.error());
+  TRY(connection.run("INSERT INTO file VALUES ($1, $2) ON CONFLICT DO NOTHING", {sum, bytes}));
   return {};
 }
 
@@ -36,15 +33,12 @@ Result<void> put_parts(Connection& connection, const std::string& sum,
   if (auto put = put_row(connection, sum, {}); !put) return put;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::string part = sha256_of(parts[i]);
-    const auto known = has_file(connection, part);
-    if (!known) return tl::unexpected(known.error());
-    if (!*known) {
+    const auto known = TRY(has_file(connection, part));
+    if (!known) {
       if (auto put = put_row(connection, part, postgres::bytes(parts[i])); !put) return put;
     }
-    const auto put =
-        connection.run("INSERT INTO file_part VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
-                       {sum, integer(static_cast<std::int64_t>(i)), part});
-    if (!put) return tl::unexpected(put.error());
+    TRY(connection.run("INSERT INTO file_part VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
+                       {sum, integer(static_cast<std::int64_t>(i)), part}));
   }
   return {};
 }
@@ -82,13 +76,11 @@ Result<std::map<std::string, std::string>> put_files(
   std::map<std::string, std::string> sums;
   for (const auto& [name, bytes] : files) {
     const std::string& sum = sums[name] = sha256_of(bytes);
-    const auto known = has_file(connection, sum);
-    if (!known) return tl::unexpected(known.error());
-    if (*known) continue;
+    const auto known = TRY(has_file(connection, sum));
+    if (known) continue;
     const auto parts = parts_of(bytes);
-    auto put = parts.size() > 1 ? put_parts(connection, sum, parts)
-                                : put_row(connection, sum, postgres::bytes(bytes));
-    if (!put) return tl::unexpected(put.error());
+    TRY(parts.size() > 1 ? put_parts(connection, sum, parts)
+                         : put_row(connection, sum, postgres::bytes(bytes)));
   }
   return sums;
 }

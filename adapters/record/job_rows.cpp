@@ -37,14 +37,13 @@ Result<int> put_jobs(postgres::Connection& connection, const std::vector<NewJob>
       "UPDATE SET state = 'waiting', version = excluded.version, tries = 0, not_before = now(), "
       "asked = now(), ended = NULL, worker = '', reason = '', asked_by = excluded.asked_by "
       "WHERE job.state NOT IN ('waiting', 'running') ";
-  const auto put = connection.run(
+  const auto put = TRY(connection.run(
       fmt::format("WITH put AS ({}{} RETURNING 1) SELECT count(*), "
                   "CASE WHEN count(*) > 0 THEN pg_notify('{}', '') END FROM put",
                   rows, if_there == IfThere::leave ? "NOTHING" : again, kJobChannel),
       {sites.parameter(), versions.parameter(), kinds.parameter(), months.parameter(),
-       seqs.parameter(), times.parameter(), sums.parameter(), asked.parameter()});
-  if (!put) return tl::unexpected(put.error());
-  return static_cast<int>(put->integer(0, 0));
+       seqs.parameter(), times.parameter(), sums.parameter(), asked.parameter()}));
+  return static_cast<int>(put.integer(0, 0));
 }
 
 }  // namespace recald::record

@@ -43,22 +43,19 @@ Result<FleetJobState> parse_state(std::string_view name) {
 
 /// Columns as in kColumns.
 Result<FleetJob> read_job(const Rows& rows, int row) {
-  const auto kind = parse_job_kind(rows.text(row, 3));
-  if (!kind) return tl::unexpected(kind.error());
-  const auto month = metering::parse_month(rows.text(row, 4));
-  if (!month) return tl::unexpected(month.error());
-  const auto state = parse_state(rows.text(row, 9));
-  if (!state) return tl::unexpected(state.error());
+  const auto kind = TRY(parse_job_kind(rows.text(row, 3)));
+  const auto month = TRY(metering::parse_month(rows.text(row, 4)));
+  const auto state = TRY(parse_state(rows.text(row, 9)));
   return FleetJob{.number = rows.integer(row, 0),
                   .site = std::string{rows.text(row, 1)},
                   .site_version = static_cast<int>(rows.integer(row, 2)),
-                  .kind = *kind,
-                  .month = *month,
+                  .kind = kind,
+                  .month = month,
                   .until_seq = rows.integer(row, 5),
                   .now = instant(rows, row, 6),
                   .input_sha256 = std::string{rows.text(row, 7)},
                   .asked_by = std::string{rows.text(row, 8)},
-                  .state = *state,
+                  .state = state,
                   .tries = static_cast<int>(rows.integer(row, 10)),
                   .worker = std::string{rows.text(row, 11)},
                   .reason = std::string{rows.text(row, 12)}};
@@ -68,9 +65,8 @@ Result<std::vector<FleetJob>> read_jobs(const Result<Rows>& rows) {
   if (!rows) return tl::unexpected(rows.error());
   std::vector<FleetJob> found;
   for (int i = 0; i < rows->size(); ++i) {
-    auto job = read_job(*rows, i);
-    if (!job) return tl::unexpected(job.error());
-    found.push_back(std::move(*job));
+    auto job = TRY(read_job(*rows, i));
+    found.push_back(std::move(job));
   }
   return found;
 }
@@ -83,7 +79,7 @@ std::string next_try(const char* from, const char* seconds) {
 
 /// Jobs whose worker let the lease run out wait again, or are set aside.
 Result<void> end_leases(Connection& connection, const LeaseRules& rules) {
-  const auto done = connection.run(
+  TRY(connection.run(
       fmt::format("UPDATE job SET state = CASE WHEN tries >= $1 THEN 'set_aside' ELSE 'waiting' "
                   "END, ended = CASE WHEN tries >= $1 THEN now() END, not_before = {}, "
                   "reason = format('the lease of %s ran out in try %s of %s: it was ended or lost "
@@ -91,8 +87,7 @@ Result<void> end_leases(Connection& connection, const LeaseRules& rules) {
                   "state = 'running' AND lease_until < now() ORDER BY number FOR UPDATE SKIP "
                   "LOCKED)",
                   next_try("lease_until", "$2::int")),
-      {integer(rules.tries_max), integer(rules.wait_after_try.count())});
-  if (!done) return tl::unexpected(done.error());
+      {integer(rules.tries_max), integer(rules.wait_after_try.count())}));
   return {};
 }
 
@@ -109,34 +104,28 @@ Result<bool> changed(const Result<Rows>& rows) {
 
 Result<void> put_result(Connection& connection, const FleetJob& job, std::int64_t site,
                         const FleetResult& result) {
-  const auto sums = put_files(connection, result.files);
-  if (!sums) return tl::unexpected(sums.error());
-  const auto put = connection.run(
+  const auto sums = TRY(put_files(connection, result.files));
+  const auto put = TRY(connection.run(
       "INSERT INTO result (site, job, kind, month, at, accepted, named, message, summary, sha256) "
       "VALUES ($1, $2, $3, $4, now(), $5, $6, $7, $8, $9) RETURNING number",
       {integer(site), integer(job.number), std::string{recald::name_of(job.kind)},
        metering::to_string(job.month), result.accepted ? "true" : "false",
        result.named ? "true" : "false", text_of(result.message), text_of(result.summary),
-       sha256_of(result.files)});
-  if (!put) return tl::unexpected(put.error());
-  for (const auto& [name, sum] : *sums) {
-    const auto file = connection.run("INSERT INTO result_file VALUES ($1, $2, $3)",
-                                     {integer(put->integer(0, 0)), name, sum});
-    if (!file) return tl::unexpected(file.error());
+       sha256_of(result.files)}));
+  for (const auto& [name, sum] : sums) {
+    TRY(connection.run("INSERT INTO result_file VALUES ($1, $2, $3)",
+                       {integer(put.integer(0, 0)), name, sum}));
   }
   return {};
 }
 
 Result<void> put_state(Connection& connection, const FleetJob& job,
                        const std::map<std::string, std::string>& state) {
-  const auto sums = put_files(connection, state);
-  if (!sums) return tl::unexpected(sums.error());
-  const auto gone = connection.run("DELETE FROM site_state WHERE job = $1", {integer(job.number)});
-  if (!gone) return tl::unexpected(gone.error());
-  for (const auto& [name, sum] : *sums) {
-    const auto put = connection.run("INSERT INTO site_state VALUES ($1, $2, $3)",
-                                    {integer(job.number), name, sum});
-    if (!put) return tl::unexpected(put.error());
+  const auto sums = TRY(put_files(connection, state));
+  TRY(connection.run("DELETE FROM site_state WHERE job = $1", {integer(job.number)}));
+  for (const auto& [name, sum] : sums) {
+    TRY(connection.run("INSERT INTO site_state VALUES ($1, $2, $3)",
+                       {integer(job.number), name, sum}));
   }
   return {};
 }
@@ -144,22 +133,20 @@ Result<void> put_state(Connection& connection, const FleetJob& job,
 /// What the job's row says, not the caller.
 Result<void> put_next(Connection& connection, const FleetJob& job, JobKind kind,
                       const std::string& asked_by) {
-  const auto rows = connection.run(
+  const auto rows = TRY(connection.run(
       "SELECT s.number, j.version, v.sha256 FROM job j JOIN site s ON s.number = j.site "
       "JOIN site_version v ON v.site = j.site AND v.number = j.version WHERE j.number = $1",
-      {integer(job.number)});
-  if (!rows) return tl::unexpected(rows.error());
+      {integer(job.number)}));
   const NewJob next{.input = {.site = job.site,
-                              .version_sha256 = std::string{rows->text(0, 2)},
+                              .version_sha256 = std::string{rows.text(0, 2)},
                               .kind = kind,
                               .month = job.month,
                               .until_seq = job.until_seq,
                               .now = job.now},
-                    .site = rows->integer(0, 0),
-                    .version = static_cast<int>(rows->integer(0, 1)),
+                    .site = rows.integer(0, 0),
+                    .version = static_cast<int>(rows.integer(0, 1)),
                     .asked_by = asked_by};
-  const auto put = put_jobs(connection, {next}, IfThere::leave);
-  if (!put) return tl::unexpected(put.error());
+  TRY(put_jobs(connection, {next}, IfThere::leave));
   return {};
 }
 
@@ -171,15 +158,14 @@ struct PresentVersion {
 
 /// Of each site that is not retired, by its id.
 Result<std::map<std::string, PresentVersion>> present_versions(Connection& connection) {
-  const auto rows = connection.run(
-      "SELECT s.id, s.number, v.number, v.sha256 FROM site s JOIN site_version v "
-      "ON v.site = s.number AND v.number = s.version WHERE s.retired IS NULL");
-  if (!rows) return tl::unexpected(rows.error());
+  const auto rows = TRY(
+      connection.run("SELECT s.id, s.number, v.number, v.sha256 FROM site s JOIN site_version v "
+                     "ON v.site = s.number AND v.number = s.version WHERE s.retired IS NULL"));
   std::map<std::string, PresentVersion> found;
-  for (int i = 0; i < rows->size(); ++i) {
-    found.emplace(rows->text(i, 0), PresentVersion{.site = rows->integer(i, 1),
-                                                   .number = static_cast<int>(rows->integer(i, 2)),
-                                                   .sha256 = std::string{rows->text(i, 3)}});
+  for (int i = 0; i < rows.size(); ++i) {
+    found.emplace(rows.text(i, 0), PresentVersion{.site = rows.integer(i, 1),
+                                                  .number = static_cast<int>(rows.integer(i, 2)),
+                                                  .sha256 = std::string{rows.text(i, 3)}});
   }
   return found;
 }
@@ -207,7 +193,7 @@ Result<std::optional<FleetJob>> lease(Connection& connection, const std::string&
     if (auto ended = end_leases(connection, rules); !ended) return ended;
     // What another worker takes at this moment is skipped, and its site is not free either: to us
     // its job waits still. Should a site become busy in between, its index refuses a second job.
-    const auto rows = connection.run(
+    const auto rows = TRY(connection.run(
         fmt::format("UPDATE job j SET state = 'running', tries = tries + 1, worker = $1, "
                     "lease_until = now() + make_interval(secs => $2::int), "
                     "state_of = coalesce(j.state_of, {}, 0) FROM site s "
@@ -218,12 +204,9 @@ Result<std::optional<FleetJob>> lease(Connection& connection, const std::string&
                     "(o.month, o.until_seq, o.number) < (w.month, w.until_seq, w.number))) "
                     "ORDER BY w.asked, w.number LIMIT 1 FOR UPDATE OF w SKIP LOCKED) RETURNING {}",
                     kJobBefore, kColumns),
-        {worker, integer(rules.lease.count())});
-    if (!rows) return tl::unexpected(rows.error());
-    if (rows->size() == 0) return {};
-    auto job = read_job(*rows, 0);
-    if (!job) return tl::unexpected(job.error());
-    taken = std::move(*job);
+        {worker, integer(rules.lease.count())}));
+    if (rows.size() == 0) return {};
+    taken = TRY(read_job(rows, 0));
     return {};
   });
   if (!done) return tl::unexpected(done.error());
@@ -241,22 +224,20 @@ Result<bool> renew(Connection& connection, const FleetJob& job, const LeaseRules
 
 Result<bool> finish(Connection& connection, const FleetJob& job, const FleetResult& result) {
   bool is_ours = false;
-  const auto done = connection.transaction([&]() -> Result<void> {
+  TRY(connection.transaction([&]() -> Result<void> {
     is_ours = false;
-    const auto ended = connection.run(
+    const auto ended = TRY(connection.run(
         fmt::format("UPDATE job SET state = 'done', ended = now(), reason = '' WHERE {} "
                     "RETURNING site",
                     kOwn),
-        own(job));
-    if (!ended) return tl::unexpected(ended.error());
-    if (ended->size() == 0) return {};
+        own(job)));
+    if (ended.size() == 0) return {};
     is_ours = true;
-    if (auto put = put_result(connection, job, ended->integer(0, 0), result); !put) return put;
+    if (auto put = put_result(connection, job, ended.integer(0, 0), result); !put) return put;
     if (auto put = put_state(connection, job, result.state); !put) return put;
     return result.next ? put_next(connection, job, *result.next, result.next_asked_by)
                        : Result<void>{};
-  });
-  if (!done) return tl::unexpected(done.error());
+  }));
   return is_ours;
 }
 
@@ -289,14 +270,13 @@ Result<bool> hand_back(Connection& connection, const FleetJob& job) {
 
 Result<std::map<std::string, std::string>> state_before(Connection& connection,
                                                         const FleetJob& job) {
-  const auto rows = connection.run(
+  const auto rows = TRY(connection.run(
       fmt::format(
           "SELECT n.name, f.bytes FROM job j JOIN site_state n ON n.job = "
           "coalesce(j.state_of, {}) JOIN whole_file f ON f.sha256 = n.sha256 WHERE j.number = $1",
           kJobBefore),
-      {integer(job.number)});
-  if (!rows) return tl::unexpected(rows.error());
-  return named_bytes(*rows);
+      {integer(job.number)}));
+  return named_bytes(rows);
 }
 
 Result<std::vector<FleetJob>> would_rerun(Connection& connection, const RerunWhat& what) {
@@ -319,10 +299,9 @@ Result<std::vector<FleetJob>> would_rerun(Connection& connection, const RerunWha
                   kColumns),
       {sites.parameter(), state, kind, month}));
   if (!found) return found;
-  const auto versions = present_versions(connection);
-  if (!versions) return tl::unexpected(versions.error());
+  const auto versions = TRY(present_versions(connection));
   for (FleetJob& job : *found) {
-    const PresentVersion& version = versions->at(job.site);
+    const PresentVersion& version = versions.at(job.site);
     job.site_version = version.number;
     job.input_sha256 = input_of(job, version).sha256();
   }
@@ -333,13 +312,12 @@ Result<int> rerun(Connection& connection, const std::vector<FleetJob>& jobs,
                   const std::string& who) {
   int count = 0;
   const auto done = connection.transaction([&]() -> Result<void> {
-    const auto versions = present_versions(connection);
-    if (!versions) return tl::unexpected(versions.error());
+    const auto versions = TRY(present_versions(connection));
     std::vector<NewJob> again;
     Array subjects, texts;
     for (const FleetJob& job : jobs) {
-      const auto version = versions->find(job.site);
-      if (version == versions->end()) continue;  // retired meanwhile
+      const auto version = versions.find(job.site);
+      if (version == versions.end()) continue;  // retired meanwhile
       again.push_back({.input = input_of(job, version->second),
                        .site = version->second.site,
                        .version = version->second.number,
@@ -347,14 +325,11 @@ Result<int> rerun(Connection& connection, const std::vector<FleetJob>& jobs,
       subjects.add(job.site);
       texts.add(fmt::format("{} of {}", recald::name_of(job.kind), metering::to_string(job.month)));
     }
-    const auto put = put_jobs(connection, again, IfThere::run_again);
-    if (!put) return tl::unexpected(put.error());
-    count = *put;
-    const auto noted = connection.run(
+    count = TRY(put_jobs(connection, again, IfThere::run_again));
+    TRY(connection.run(
         "INSERT INTO audit (time, who, action, subject, text) SELECT now(), $1, 'rerun', * "
         "FROM unnest($2::text[], $3::text[])",
-        {who, subjects.parameter(), texts.parameter()});
-    if (!noted) return tl::unexpected(noted.error());
+        {who, subjects.parameter(), texts.parameter()}));
     return {};
   });
   if (!done) return tl::unexpected(done.error());
@@ -384,13 +359,11 @@ Result<std::vector<FleetJob>> troubled_jobs(Connection& connection) {
 }
 
 Result<std::map<FleetJobState, std::int64_t>> job_counts(Connection& connection) {
-  const auto rows = connection.run("SELECT state, count(*) FROM job GROUP BY state");
-  if (!rows) return tl::unexpected(rows.error());
+  const auto rows = TRY(connection.run("SELECT state, count(*) FROM job GROUP BY state"));
   std::map<FleetJobState, std::int64_t> counts;
-  for (int i = 0; i < rows->size(); ++i) {
-    const auto state = parse_state(rows->text(i, 0));
-    if (!state) return tl::unexpected(state.error());
-    counts[*state] = rows->integer(i, 1);
+  for (int i = 0; i < rows.size(); ++i) {
+    const auto state = TRY(parse_state(rows.text(i, 0)));
+    counts[state] = rows.integer(i, 1);
   }
   return counts;
 }
@@ -398,7 +371,7 @@ Result<std::map<FleetJobState, std::int64_t>> job_counts(Connection& connection)
 Result<std::vector<FleetResultRow>> newest_results(Connection& connection, JobKind kind,
                                                    const std::string& site) {
   // A gateway's summary is its whole document, which no list needs.
-  const auto rows = connection.run(
+  const auto rows = TRY(connection.run(
       "SELECT s.id, r.month, r.job IS NULL, extract(epoch FROM r.at)::bigint, r.accepted, r.named, "
       "r.message, CASE WHEN r.job IS NULL THEN '' ELSE r.summary END, "
       "coalesce((SELECT input_sha256 FROM job WHERE number = r.job), ''), r.sha256, "
@@ -406,25 +379,23 @@ Result<std::vector<FleetResultRow>> newest_results(Connection& connection, JobKi
       "FROM site s CROSS JOIN LATERAL (SELECT * FROM result n WHERE n.site = s.number AND "
       "n.kind = $1 ORDER BY n.job IS NULL, n.month DESC, n.number DESC LIMIT 1) r "
       "WHERE s.retired IS NULL AND ($2 = '' OR s.id = $2) ORDER BY s.id",
-      {std::string{recald::name_of(kind)}, site});
-  if (!rows) return tl::unexpected(rows.error());
+      {std::string{recald::name_of(kind)}, site}));
   std::vector<FleetResultRow> found;
-  for (int i = 0; i < rows->size(); ++i) {
-    const auto month = metering::parse_month(rows->text(i, 1));
-    if (!month) return tl::unexpected(month.error());
-    FleetResultRow row{.site = std::string{rows->text(i, 0)},
+  for (int i = 0; i < rows.size(); ++i) {
+    const auto month = TRY(metering::parse_month(rows.text(i, 1)));
+    FleetResultRow row{.site = std::string{rows.text(i, 0)},
                        .kind = kind,
-                       .month = *month,
-                       .from = rows->boolean(i, 2) ? "gateway" : "worker",
-                       .at = instant(*rows, i, 3),
-                       .accepted = rows->boolean(i, 4),
-                       .named = rows->boolean(i, 5),
-                       .message = std::string{rows->text(i, 6)},
-                       .summary = std::string{rows->text(i, 7)},
-                       .input_sha256 = std::string{rows->text(i, 8)},
-                       .sha256 = std::string{rows->text(i, 9)},
+                       .month = month,
+                       .from = rows.boolean(i, 2) ? "gateway" : "worker",
+                       .at = instant(rows, i, 3),
+                       .accepted = rows.boolean(i, 4),
+                       .named = rows.boolean(i, 5),
+                       .message = std::string{rows.text(i, 6)},
+                       .summary = std::string{rows.text(i, 7)},
+                       .input_sha256 = std::string{rows.text(i, 8)},
+                       .sha256 = std::string{rows.text(i, 9)},
                        .files = {}};
-    std::istringstream names{std::string{rows->text(i, 10)}};
+    std::istringstream names{std::string{rows.text(i, 10)}};
     for (std::string name; std::getline(names, name);) row.files.push_back(name);
     found.push_back(std::move(row));
   }
@@ -433,14 +404,13 @@ Result<std::vector<FleetResultRow>> newest_results(Connection& connection, JobKi
 
 Result<std::string> result_file(Connection& connection, const std::string& site, JobKind kind,
                                 metering::Month month, const std::string& name) {
-  const auto rows = connection.run(
+  const auto rows = TRY(connection.run(
       "SELECT f.bytes FROM result r JOIN site s ON s.number = r.site "
       "JOIN result_file n ON n.result = r.number JOIN whole_file f ON f.sha256 = n.sha256 "
       "WHERE s.id = $1 AND r.kind = $2 AND r.month = $3 AND n.name = $4 "
       "ORDER BY r.number DESC LIMIT 1",
-      {site, std::string{recald::name_of(kind)}, metering::to_string(month), name});
-  if (!rows) return tl::unexpected(rows.error());
-  if (rows->size() > 0) return rows->bytes(0, 0);
+      {site, std::string{recald::name_of(kind)}, metering::to_string(month), name}));
+  if (rows.size() > 0) return rows.bytes(0, 0);
   return failure(ErrorCode::not_found,
                  fmt::format("the record has no {} of the {} of {} in {}", name,
                              recald::name_of(kind), site, metering::to_string(month)));

@@ -408,38 +408,35 @@ std::string to_json(const StoredMonth& month) { return text_of_json(json_of(mont
 
 Result<StoredMonth> parse_stored_month(std::string_view text) {
   constexpr std::string_view kWhat = "a month of the record";
-  const auto json = parse_object(kWhat, text);
-  if (!json) return tl::unexpected(json.error());
+  const auto json = TRY(parse_object(kWhat, text));
   Reader reader{kWhat};
-  StoredMonth month = read_month(reader, *json);
+  StoredMonth month = read_month(reader, json);
   return reader.result(std::move(month));
 }
 
 Result<RecordBatch> parse_batch(std::string_view text) {
   constexpr std::string_view kWhat = "the batch";
-  const auto json = parse_object(kWhat, text);
-  if (!json) return tl::unexpected(json.error());
+  const auto json = TRY(parse_object(kWhat, text));
   Reader reader{kWhat};
-  RecordBatch batch{.outbox = read_outbox(reader, *json),
-                    .after = read_progress(reader, reader.member(*json, "after")),
-                    .question = reader.integer(*json, "question", kNumber_max),
-                    .is_first = reader.flag(reader.member(*json, "first"), "first")};
+  RecordBatch batch{.outbox = read_outbox(reader, json),
+                    .after = read_progress(reader, reader.member(json, "after")),
+                    .question = reader.integer(json, "question", kNumber_max),
+                    .is_first = reader.flag(reader.member(json, "first"), "first")};
   if (batch.outbox == 0) reader.refuse("outbox", "is 0");
-  batch.entries = reader.list<OutboxEntry>(*json, "entries", batch.after.entries, read_entry);
-  batch.events = reader.list<StoreEvent>(*json, "events", batch.after.events, read_event);
-  batch.results = reader.list<StoredJob>(*json, "results", batch.after.results, read_result);
+  batch.entries = reader.list<OutboxEntry>(json, "entries", batch.after.entries, read_entry);
+  batch.events = reader.list<StoreEvent>(json, "events", batch.after.events, read_event);
+  batch.results = reader.list<StoredJob>(json, "results", batch.after.results, read_result);
   return reader.result(std::move(batch));
 }
 
 Result<Watermark> parse_watermark(std::string_view text) {
   constexpr std::string_view kWhat = "the watermark";
-  const auto json = parse_object(kWhat, text);
-  if (!json) return tl::unexpected(json.error());
+  const auto json = TRY(parse_object(kWhat, text));
   Reader reader{kWhat};
-  const std::int64_t outbox = read_outbox(reader, *json);
+  const std::int64_t outbox = read_outbox(reader, json);
   return reader.result(Watermark{.outbox = outbox,
-                                 .until = read_progress(reader, *json),
-                                 .answers = reader.integer(*json, "answers", kNumber_max)});
+                                 .until = read_progress(reader, json),
+                                 .answers = reader.integer(json, "answers", kNumber_max)});
 }
 
 }  // namespace recald::record

@@ -41,8 +41,7 @@ std::string description_of(const SiteDescription& site) {
 Result<SiteDescription> read_description(const std::string& id, std::string_view text) {
   try {
     const Json read = Json::parse(text);
-    const auto from = metering::parse_month(read.at("calibrate_from").get<std::string>());
-    if (!from) return tl::unexpected(from.error());
+    const auto from = TRY(metering::parse_month(read.at("calibrate_from").get<std::string>()));
     return SiteDescription{.id = id,
                            .name = read.at("name"),
                            .use = read.at("use"),
@@ -54,7 +53,7 @@ Result<SiteDescription> read_description(const std::string& id, std::string_view
                            .outputs = read.at("outputs"),
                            .site_file = read.at("site_file"),
                            .files = {},
-                           .calibrate_from = *from};
+                           .calibrate_from = from};
   } catch (const Json::exception&) {
     return failure(
         ErrorCode::malformed,
@@ -75,39 +74,31 @@ Result<SiteVersion> put_version(postgres::Connection& connection, const SiteDesc
   described[""] = description;  // no file's name
   SiteVersion version{.sha256 = sha256_of(described)};
 
-  auto known = connection.run(
-      "INSERT INTO site (id, version, added) VALUES ($1, 0, now()) "
-      "ON CONFLICT (id) DO UPDATE SET retired = NULL RETURNING number, version",
-      {site.id});
-  if (!known) return tl::unexpected(known.error());
-  const auto number = known->integer(0, 0);
-  version.number = static_cast<int>(known->integer(0, 1));
+  auto known =
+      TRY(connection.run("INSERT INTO site (id, version, added) VALUES ($1, 0, now()) "
+                         "ON CONFLICT (id) DO UPDATE SET retired = NULL RETURNING number, version",
+                         {site.id}));
+  const auto number = known.integer(0, 0);
+  version.number = static_cast<int>(known.integer(0, 1));
   const auto present =
-      connection.run("SELECT sha256 FROM site_version WHERE site = $1 AND number = $2",
-                     {integer(number), integer(version.number)});
-  if (!present) return tl::unexpected(present.error());
-  if (present->size() == 1 && present->text(0, 0) == version.sha256) return version;
+      TRY(connection.run("SELECT sha256 FROM site_version WHERE site = $1 AND number = $2",
+                         {integer(number), integer(version.number)}));
+  if (present.size() == 1 && present.text(0, 0) == version.sha256) return version;
 
   version.is_new = true;
   ++version.number;
-  const auto sums = put_files(connection, site.files);
-  if (!sums) return tl::unexpected(sums.error());
-  const auto put =
-      connection.run("INSERT INTO site_version VALUES ($1, $2, $3, $4::jsonb, now(), $5)",
-                     {integer(number), integer(version.number), version.sha256, description, who});
-  if (!put) return tl::unexpected(put.error());
-  for (const auto& [name, sum] : *sums) {
-    const auto file = connection.run("INSERT INTO site_file VALUES ($1, $2, $3, $4)",
-                                     {integer(number), integer(version.number), name, sum});
-    if (!file) return tl::unexpected(file.error());
+  const auto sums = TRY(put_files(connection, site.files));
+  TRY(connection.run("INSERT INTO site_version VALUES ($1, $2, $3, $4::jsonb, now(), $5)",
+                     {integer(number), integer(version.number), version.sha256, description, who}));
+  for (const auto& [name, sum] : sums) {
+    TRY(connection.run("INSERT INTO site_file VALUES ($1, $2, $3, $4)",
+                       {integer(number), integer(version.number), name, sum}));
   }
-  const auto set = connection.run("UPDATE site SET version = $2 WHERE number = $1",
-                                  {integer(number), integer(version.number)});
-  if (!set) return tl::unexpected(set.error());
-  const auto noted = connection.run(
+  TRY(connection.run("UPDATE site SET version = $2 WHERE number = $1",
+                     {integer(number), integer(version.number)}));
+  TRY(connection.run(
       "INSERT INTO audit (time, who, action, subject, text) VALUES (now(), $1, 'put_site', $2, $3)",
-      {who, site.id, fmt::format("version {}, {}", version.number, version.sha256)});
-  if (!noted) return tl::unexpected(noted.error());
+      {who, site.id, fmt::format("version {}, {}", version.number, version.sha256)}));
   return version;
 }
 
@@ -116,25 +107,21 @@ Result<SiteVersion> put_version(postgres::Connection& connection, const SiteDesc
 Result<SiteVersion> put_site(postgres::Connection& connection, const SiteDescription& site,
                              const std::string& who) {
   SiteVersion version;
-  const auto done = connection.transaction([&]() -> Result<void> {
-    const auto put = put_version(connection, site, who);
-    if (!put) return tl::unexpected(put.error());
-    version = *put;
+  TRY(connection.transaction([&]() -> Result<void> {
+    version = TRY(put_version(connection, site, who));
     return {};
-  });
-  if (!done) return tl::unexpected(done.error());
+  }));
   return version;
 }
 
 Result<void> retire_site(postgres::Connection& connection, const std::string& site,
                          const std::string& who) {
-  const auto done = connection.run(
+  const auto done = TRY(connection.run(
       "WITH retired AS (UPDATE site SET retired = now() WHERE id = $1 AND retired IS NULL "
       "RETURNING id) INSERT INTO audit (time, who, action, subject, text) "
       "SELECT now(), $2, 'retire_site', id, '' FROM retired",
-      {site, who});
-  if (!done) return tl::unexpected(done.error());
-  if (done->affected() == 0) return tl::unexpected(unknown_site(site));
+      {site, who}));
+  if (done.affected() == 0) return tl::unexpected(unknown_site(site));
   return {};
 }
 
@@ -150,9 +137,8 @@ Result<std::vector<RecordedSite>> sites(postgres::Connection& connection) {
   };
   std::vector<RecordedSite> found;
   for (int i = 0; i < rows->size(); ++i) {
-    auto site = read_description(std::string{rows->text(i, 0)}, rows->text(i, 1));
-    if (!site) return tl::unexpected(site.error());
-    found.push_back({.site = std::move(*site),
+    auto site = TRY(read_description(std::string{rows->text(i, 0)}, rows->text(i, 1)));
+    found.push_back({.site = std::move(site),
                      .version = {.number = static_cast<int>(rows->integer(i, 2)),
                                  .sha256 = std::string{rows->text(i, 3)}},
                      .added = instant(*rows, i, 4),
@@ -164,44 +150,40 @@ Result<std::vector<RecordedSite>> sites(postgres::Connection& connection) {
 
 Result<SiteDescription> site_of_version(postgres::Connection& connection, const std::string& site,
                                         int version) {
-  const auto rows = connection.run(
-      "SELECT v.description FROM site s JOIN site_version v ON v.site = s.number "
-      "WHERE s.id = $1 AND v.number = $2",
-      {site, integer(version)});
-  if (!rows) return tl::unexpected(rows.error());
-  if (rows->size() == 0) return tl::unexpected(unknown_site(site));
-  auto read = read_description(site, rows->text(0, 0));
+  const auto rows = TRY(
+      connection.run("SELECT v.description FROM site s JOIN site_version v ON v.site = s.number "
+                     "WHERE s.id = $1 AND v.number = $2",
+                     {site, integer(version)}));
+  if (rows.size() == 0) return tl::unexpected(unknown_site(site));
+  auto read = read_description(site, rows.text(0, 0));
   if (!read) return read;
-  const auto files = connection.run(
-      "SELECT n.name, f.bytes FROM site s JOIN site_file n ON n.site = s.number "
-      "JOIN whole_file f ON f.sha256 = n.sha256 WHERE s.id = $1 AND n.number = $2",
-      {site, integer(version)});
-  if (!files) return tl::unexpected(files.error());
-  read->files = named_bytes(*files);
+  const auto files = TRY(
+      connection.run("SELECT n.name, f.bytes FROM site s JOIN site_file n ON n.site = s.number "
+                     "JOIN whole_file f ON f.sha256 = n.sha256 WHERE s.id = $1 AND n.number = $2",
+                     {site, integer(version)}));
+  read->files = named_bytes(files);
   return read;
 }
 
 Result<void> audit(postgres::Connection& connection, const AuditEntry& entry) {
-  const auto put = connection.run(
+  TRY(connection.run(
       "INSERT INTO audit (time, who, action, subject, text) VALUES ($1, $2, $3, $4, $5)",
-      {parameter(entry.time), entry.who, entry.action, entry.subject, entry.text});
-  if (!put) return tl::unexpected(put.error());
+      {parameter(entry.time), entry.who, entry.action, entry.subject, entry.text}));
   return {};
 }
 
 Result<std::vector<AuditEntry>> audited(postgres::Connection& connection, int limit) {
-  const auto rows = connection.run(
+  const auto rows = TRY(connection.run(
       "SELECT extract(epoch FROM time)::bigint, who, action, subject, text FROM audit "
       "ORDER BY number DESC LIMIT $1",
-      {integer(limit)});
-  if (!rows) return tl::unexpected(rows.error());
+      {integer(limit)}));
   std::vector<AuditEntry> entries;
-  for (int i = 0; i < rows->size(); ++i) {
-    entries.push_back({.time = instant(*rows, i, 0),
-                       .who = std::string{rows->text(i, 1)},
-                       .action = std::string{rows->text(i, 2)},
-                       .subject = std::string{rows->text(i, 3)},
-                       .text = std::string{rows->text(i, 4)}});
+  for (int i = 0; i < rows.size(); ++i) {
+    entries.push_back({.time = instant(rows, i, 0),
+                       .who = std::string{rows.text(i, 1)},
+                       .action = std::string{rows.text(i, 2)},
+                       .subject = std::string{rows.text(i, 3)},
+                       .text = std::string{rows.text(i, 4)}});
   }
   return entries;
 }
