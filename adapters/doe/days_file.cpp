@@ -27,12 +27,11 @@ class DayReader {
   }
 
   Result<DesignDays> read() {
-    if (auto found = find_columns(); !found) return tl::unexpected(found.error());
+    TRY(find_columns());
     for (;;) {
-      const auto more = table_.next();
-      if (!more) return tl::unexpected(more.error());
-      if (!*more) break;
-      if (auto row = read_row(); !row) return tl::unexpected(row.error());
+      const auto more = TRY(table_.next());
+      if (!more) break;
+      TRY(read_row());
     }
     if (table_.ends_open()) {
       return table_.wrong("the file ends within a line; delete it and run `recald doe` again");
@@ -43,35 +42,30 @@ class DayReader {
  private:
   Result<void> find_columns() {
     for (const auto& [name, column] : {std::pair{"run", &run_}, std::pair{"day", &day_}}) {
-      const auto found = table_.require(name);
-      if (!found) return tl::unexpected(found.error());
-      *column = *found;
+      *column = TRY(table_.require(name));
     }
     for (const std::string& output : design_.output_names) {
-      const auto found = table_.require(output);
-      if (!found) return tl::unexpected(found.error());
-      columns_.push_back(*found);
+      const auto found = TRY(table_.require(output));
+      columns_.push_back(found);
     }
     return {};
   }
 
   Result<void> read_row() {
-    const auto run = table_.whole_number(run_);
-    if (!run) return tl::unexpected(run.error());
-    const auto known = row_of_run_.find(*run);
+    const auto run = TRY(table_.whole_number(run_));
+    const auto known = row_of_run_.find(run);
     if (known == row_of_run_.end()) return {};
     const auto day = metering::parse_day(table_.text(day_));
     if (!day) return table_.wrong(day.error().message);
     auto& of_run = values_of_run_[static_cast<std::size_t>(known->second)];
     auto [place, is_new] = of_run.try_emplace(*day);
     if (!is_new) {
-      return table_.wrong(fmt::format("run {} has {} twice", *run, metering::to_string(*day)));
+      return table_.wrong(fmt::format("run {} has {} twice", run, metering::to_string(*day)));
     }
     place->second.reserve(columns_.size());
     for (const std::size_t column : columns_) {
-      const auto value = table_.number(column);
-      if (!value) return tl::unexpected(value.error());
-      place->second.push_back(*value);
+      const auto value = TRY(table_.number(column));
+      place->second.push_back(value);
     }
     return {};
   }
@@ -124,9 +118,8 @@ std::filesystem::path days_file(const std::filesystem::path& folder) {
 }
 
 Result<DesignDays> read_design_days(const DesignFolder& design) {
-  auto table = TableReader::open(days_file(design.folder));
-  if (!table) return tl::unexpected(table.error());
-  return DayReader{*table, design}.read();
+  auto table = TRY(TableReader::open(days_file(design.folder)));
+  return DayReader{table, design}.read();
 }
 
 Result<void> write_design_days(const std::filesystem::path& folder, const std::vector<int>& runs,

@@ -25,9 +25,8 @@ constexpr double kRounding = 1e-4;
 template <class ReadRow>
 Result<void> for_each_row(TableReader& table, const ReadRow& read) {
   for (;;) {
-    const auto more = table.next();
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) return {};
+    const auto more = TRY(table.next());
+    if (!more) return {};
     if (Result<void> ok = read(); !ok) return ok;
   }
 }
@@ -67,7 +66,7 @@ struct ValueColumns {
 Result<ValueColumns> columns_beside(const TableReader& table,
                                     std::span<const std::string_view> keys) {
   for (const std::string_view key : keys) {
-    if (const auto column = table.require(key); !column) return tl::unexpected(column.error());
+    TRY(table.require(key));
   }
   ValueColumns beside;
   for (std::size_t i = 0; i < table.columns().size(); ++i) {
@@ -105,9 +104,7 @@ class RunReader {
   RunReader(TableReader& table, DesignFolder& design) : table_{table}, design_{design} {}
 
   Result<void> read() {
-    auto failed = read_failed_runs(table_.file().parent_path());
-    if (!failed) return tl::unexpected(failed.error());
-    failed_ = std::move(*failed);
+    failed_ = TRY(read_failed_runs(table_.file().parent_path()));
     if (auto found = find_columns(); !found) return found;
     if (auto all = for_each_row(table_, [this] { return read_row(); }); !all) return all;
     note_open_end(table_, design_.notes);
@@ -128,13 +125,10 @@ class RunReader {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   Result<void> find_columns() {
-    const auto run = table_.require("run");
-    if (!run) return tl::unexpected(run.error());
-    run_ = *run;
+    run_ = TRY(table_.require("run"));
     for (const Parameter& parameter : design_.parameters) {
-      const auto column = table_.require(parameter.name);
-      if (!column) return tl::unexpected(column.error());
-      columns_.push_back(*column);
+      const auto column = TRY(table_.require(parameter.name));
+      columns_.push_back(column);
     }
     for (const std::string& column : table_.columns()) {
       const bool known = std::ranges::find(design_.parameters, column, &Parameter::name) !=
@@ -149,15 +143,13 @@ class RunReader {
   }
 
   Result<void> read_row() {
-    const auto run = table_.whole_number(run_);
-    if (!run) return tl::unexpected(run.error());
-    if (!seen_.insert(*run).second) return table_.wrong(fmt::format("run {} comes twice", *run));
-    if (failed_.contains(*run)) return {};
-    design_.runs.push_back(*run);
+    const auto run = TRY(table_.whole_number(run_));
+    if (!seen_.insert(run).second) return table_.wrong(fmt::format("run {} comes twice", run));
+    if (failed_.contains(run)) return {};
+    design_.runs.push_back(run);
     for (const std::size_t column : columns_) {
-      const auto value = table_.number(column);
-      if (!value) return tl::unexpected(value.error());
-      values_.push_back(*value);
+      const auto value = TRY(table_.number(column));
+      values_.push_back(value);
     }
     return {};
   }
@@ -220,9 +212,7 @@ class OutputReader {
 
   Result<void> read() {
     constexpr std::string_view keys[] = {"run", "month"};
-    auto columns = columns_beside(table_, keys);
-    if (!columns) return tl::unexpected(columns.error());
-    columns_ = std::move(*columns);
+    columns_ = TRY(columns_beside(table_, keys));
     if (auto all = for_each_row(table_, [this] { return read_row(); }); !all) return all;
     note_open_end(table_, design_.notes);
     if (auto whole = check_runs(); !whole) return whole;
@@ -233,25 +223,22 @@ class OutputReader {
 
  private:
   Result<void> read_row() {
-    const auto run = table_.whole_number(*table_.find("run"));
-    if (!run) return tl::unexpected(run.error());
-    const auto known = row_of_run_.find(*run);
+    const auto run = TRY(table_.whole_number(*table_.find("run")));
+    const auto known = row_of_run_.find(run);
     if (known == row_of_run_.end()) {
       return table_.wrong(fmt::format(
-          "run {} is not in the file of run inputs; remove its rows or add it there", *run));
+          "run {} is not in the file of run inputs; remove its rows or add it there", run));
     }
-    const auto month = read_month(table_, *table_.find("month"));
-    if (!month) return tl::unexpected(month.error());
-    auto [place, is_new] = rows_[known->second].try_emplace(*month);
+    const auto month = TRY(read_month(table_, *table_.find("month")));
+    auto [place, is_new] = rows_[known->second].try_emplace(month);
     if (!is_new) {
-      return table_.wrong(fmt::format("run {} has month {} twice", *run, month->text()));
+      return table_.wrong(fmt::format("run {} has month {} twice", run, month.text()));
     }
     for (const std::size_t column : columns_.columns) {
-      const auto value = table_.number(column);
-      if (!value) return tl::unexpected(value.error());
-      place->second.push_back(*value);
+      const auto value = TRY(table_.number(column));
+      place->second.push_back(value);
     }
-    months_.insert(*month);
+    months_.insert(month);
     return {};
   }
 
@@ -323,23 +310,20 @@ class OutputReader {
 
 /// Reads a file with one row per month. Blanks become NaN if they are allowed.
 Result<MonthlyTable> read_months(TableReader& table, const ValueColumns& columns, bool blanks) {
-  const auto month_column = table.require("month");
-  if (!month_column) return tl::unexpected(month_column.error());
+  const auto month_column = TRY(table.require("month"));
   RowsByMonth rows;
   const auto read_row = [&]() -> Result<void> {
-    const auto month = read_month(table, *month_column);
-    if (!month) return tl::unexpected(month.error());
-    auto [place, is_new] = rows.try_emplace(*month);
-    if (!is_new) return table.wrong(fmt::format("month {} comes twice", month->text()));
+    const auto month = TRY(read_month(table, month_column));
+    auto [place, is_new] = rows.try_emplace(month);
+    if (!is_new) return table.wrong(fmt::format("month {} comes twice", month.text()));
     for (const std::size_t column : columns.columns) {
-      const auto value = table.number_or_blank(column);
-      if (!value) return tl::unexpected(value.error());
-      if (!*value && !blanks) return tl::unexpected(table.number(column).error());
-      place->second.push_back(value->value_or(kAbsent));
+      const auto value = TRY(table.number_or_blank(column));
+      if (!value && !blanks) return tl::unexpected(table.number(column).error());
+      place->second.push_back(value.value_or(kAbsent));
     }
     return {};
   };
-  if (auto all = for_each_row(table, read_row); !all) return tl::unexpected(all.error());
+  TRY(for_each_row(table, read_row));
   return make_table(rows, columns.names);
 }
 
@@ -399,21 +383,17 @@ Files files_of(const fs::path& folder, const std::string& design) {
 
 template <class Reader>
 Result<void> read_with(const fs::path& file, DesignFolder& design) {
-  auto table = TableReader::open(file);
-  if (!table) return tl::unexpected(table.error());
-  return Reader{*table, design}.read();
+  auto table = TRY(TableReader::open(file));
+  return Reader{table, design}.read();
 }
 
 Result<void> read_inputs(const fs::path& file, DesignFolder& design) {
-  auto table = TableReader::open(file);
-  if (!table) return tl::unexpected(table.error());
+  auto table = TRY(TableReader::open(file));
   constexpr std::string_view keys[] = {"month"};
-  const auto columns = columns_beside(*table, keys);
-  if (!columns) return tl::unexpected(columns.error());
-  auto inputs = read_months(*table, *columns, /*blanks=*/false);
-  if (!inputs) return tl::unexpected(inputs.error());
-  note_open_end(*table, design.notes);
-  design.inputs = std::move(*inputs);
+  const auto columns = TRY(columns_beside(table, keys));
+  auto inputs = TRY(read_months(table, columns, /*blanks=*/false));
+  note_open_end(table, design.notes);
+  design.inputs = std::move(inputs);
   return check_inputs(file, design);
 }
 
@@ -505,46 +485,36 @@ Result<DesignFolder> read_design_folder(const fs::path& folder, const std::strin
   DesignFolder design;
   design.folder = folder;
   design.files = {files.priors, files.inputs, files.outputs, folder / "inputs.csv"};
-  auto parameters = read_priors(files.priors);
-  if (!parameters) return tl::unexpected(parameters.error());
-  design.parameters = std::move(*parameters);
-  if (auto read = read_with<RunReader>(files.inputs, design); !read) {
-    return tl::unexpected(read.error());
-  }
-  if (auto read = read_with<OutputReader>(files.outputs, design); !read) {
-    return tl::unexpected(read.error());
-  }
-  if (auto read = read_inputs(folder / "inputs.csv", design); !read) {
-    return tl::unexpected(read.error());
-  }
-  if (auto unique = check_names(design); !unique) return tl::unexpected(unique.error());
+  design.parameters = TRY(read_priors(files.priors));
+  TRY(read_with<RunReader>(files.inputs, design));
+  TRY(read_with<OutputReader>(files.outputs, design));
+  TRY(read_inputs(folder / "inputs.csv", design));
+  TRY(check_names(design));
   return design;
 }
 
 Result<Measurements> read_measurements(const fs::path& file, const DesignFolder& design) {
-  auto table = TableReader::open(file);
-  if (!table) return tl::unexpected(table.error());
+  auto table = TRY(TableReader::open(file));
   Measurements result;
-  const ValueColumns columns = measured_columns(*table, design, result.notes);
+  const ValueColumns columns = measured_columns(table, design, result.notes);
   if (columns.names.empty()) {
     return failure(
         ErrorCode::not_enough_data,
         fmt::format("'{}' measures no output of the design ({}); its columns are {}", file.string(),
-                    listed(design.output_names), listed(table->columns())));
+                    listed(design.output_names), listed(table.columns())));
   }
-  auto measured = read_months(*table, columns, /*blanks=*/true);
-  if (!measured) return tl::unexpected(measured.error());
-  note_open_end(*table, result.notes);
-  measured->values = among_all(*measured, design.output_names);
-  measured->names = design.output_names;
-  if (!measures_any(*measured, design.months)) {
+  auto measured = TRY(read_months(table, columns, /*blanks=*/true));
+  note_open_end(table, result.notes);
+  measured.values = among_all(measured, design.output_names);
+  measured.names = design.output_names;
+  if (!measures_any(measured, design.months)) {
     return failure(
         ErrorCode::not_enough_data,
         fmt::format("'{}' measures no month of the design, {} to {}, so nothing can be "
                     "calibrated",
                     file.string(), design.months.front().text(), design.months.back().text()));
   }
-  result.table = with_inputs(std::move(*measured), design.inputs, result.notes);
+  result.table = with_inputs(std::move(measured), design.inputs, result.notes);
   return result;
 }
 

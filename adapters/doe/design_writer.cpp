@@ -125,28 +125,23 @@ Result<void> write_plan(const fs::path& folder, const DesignPlan& plan) {
 
 /// Reads the runs of doe_outputs.csv into `runs`.
 Result<void> read_runs(const fs::path& file, const DesignPlan& plan, DesignRunsSoFar& runs) {
-  auto table = TableReader::open(file);
-  if (!table) return tl::unexpected(table.error());
+  auto table = TRY(TableReader::open(file));
   std::vector<std::string> columns{"run", "month"};
   columns.insert(columns.end(), plan.output_names.begin(), plan.output_names.end());
-  if (table->columns() != columns) return table->wrong("the columns are not those of this design");
+  if (table.columns() != columns) return table.wrong("the columns are not those of this design");
   const auto months = static_cast<Eigen::Index>(plan.months.size());
   for (Eigen::Index row = 0;; ++row) {
-    const auto more = table->next();
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) break;
-    const auto run = table->whole_number(0);
-    if (!run) return tl::unexpected(run.error());
+    const auto more = TRY(table.next());
+    if (!more) break;
+    const auto run = TRY(table.whole_number(0));
     const Eigen::Index i = row % months;
-    if (*run < 1 || *run > runs.outputs.rows() ||
-        table->text(1) != plan.months[static_cast<std::size_t>(i)].text()) {
-      return table->wrong(
-          "this is no run of this design; delete the file to run all of them again");
+    if (run < 1 || run > runs.outputs.rows() ||
+        table.text(1) != plan.months[static_cast<std::size_t>(i)].text()) {
+      return table.wrong("this is no run of this design; delete the file to run all of them again");
     }
     for (std::size_t k = 0; k < plan.output_names.size(); ++k) {
-      const auto value = table->number(k + 2);
-      if (!value) return tl::unexpected(value.error());
-      runs.outputs(*run - 1, static_cast<Eigen::Index>(k) * months + i) = *value;
+      const auto value = TRY(table.number(k + 2));
+      runs.outputs(run - 1, static_cast<Eigen::Index>(k) * months + i) = value;
     }
   }
   // A truncated file may end within a run; that run is not done.
@@ -166,14 +161,14 @@ Result<DesignRunsSoFar> open_design(const fs::path& folder, const DesignPlan& pl
                    fmt::format("'{}' holds a design that {}; delete it, or give another --out",
                                folder.string(), why));
   }
-  if (auto written = write_plan(folder, plan); !written) return tl::unexpected(written.error());
+  TRY(write_plan(folder, plan));
   const auto runs = static_cast<std::size_t>(plan.theta.rows());
   const auto values = static_cast<Eigen::Index>(plan.output_names.size() * plan.months.size());
   DesignRunsSoFar so_far{Eigen::MatrixXd::Constant(plan.theta.rows(), values, kAbsent),
                          std::vector<bool>(runs, false)};
   const fs::path outputs = folder / "doe_outputs.csv";
   if (!is_there(outputs)) return so_far;
-  if (auto read = read_runs(outputs, plan, so_far); !read) return tl::unexpected(read.error());
+  TRY(read_runs(outputs, plan, so_far));
   return so_far;
 }
 

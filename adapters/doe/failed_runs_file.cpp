@@ -19,18 +19,15 @@ Result<std::map<int, std::string>> read_failed_runs(const std::filesystem::path&
   const std::filesystem::path file = folder / kFailedFile;
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return failed;
-  auto table = TableReader::open(file);
-  if (!table) return tl::unexpected(table.error());
+  auto table = TRY(TableReader::open(file));
   for (const char* column : {"run", "because"}) {
-    if (auto found = table->require(column); !found) return tl::unexpected(found.error());
+    TRY(table.require(column));
   }
   for (;;) {
-    const auto more = table->next();
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) return failed;
-    const auto run = table->whole_number(*table->find("run"));
-    if (!run) return tl::unexpected(run.error());
-    failed[*run] = table->text(*table->find("because"));
+    const auto more = TRY(table.next());
+    if (!more) return failed;
+    const auto run = TRY(table.whole_number(*table.find("run")));
+    failed[run] = table.text(*table.find("because"));
   }
 }
 

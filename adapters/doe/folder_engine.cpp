@@ -19,9 +19,8 @@ FolderEngine::FolderEngine(std::filesystem::path folder, DesignPlan plan, Engine
 
 Result<FolderEngine> FolderEngine::open(std::filesystem::path folder, DesignPlan plan,
                                         Engine* behind) {
-  auto runs = open_design(folder, plan);
-  if (!runs) return tl::unexpected(runs.error());
-  return FolderEngine{std::move(folder), std::move(plan), behind, std::move(*runs)};
+  auto runs = TRY(open_design(folder, plan));
+  return FolderEngine{std::move(folder), std::move(plan), behind, std::move(runs)};
 }
 
 Result<std::vector<Eigen::Index>> FolderEngine::rows_of(const Eigen::MatrixXd& theta) const {
@@ -45,14 +44,13 @@ Result<std::vector<Eigen::Index>> FolderEngine::rows_of(const Eigen::MatrixXd& t
 
 Result<void> FolderEngine::run_rows(const std::vector<Eigen::Index>& rows,
                                     const ForEachIndex& executor, const Observer& observer) {
-  const auto outputs = behind_->run(plan_.theta(rows, Eigen::all), executor, observer);
-  if (!outputs) return tl::unexpected(outputs.error());
+  const auto outputs = TRY(behind_->run(plan_.theta(rows, Eigen::all), executor, observer));
   for (const FailedRun& failed : behind_->failed_runs()) {
     const Eigen::Index row = rows[static_cast<std::size_t>(failed.row)];
     runs_.failed[static_cast<int>(row) + 1] = failed.because;
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto outputs_of_run = outputs->row(static_cast<Eigen::Index>(i));
+    const auto outputs_of_run = outputs.row(static_cast<Eigen::Index>(i));
     if (!outputs_of_run.allFinite()) continue;
     runs_.outputs.row(rows[i]) = outputs_of_run;
     runs_.done[static_cast<std::size_t>(rows[i])] = true;
@@ -63,15 +61,14 @@ Result<void> FolderEngine::run_rows(const std::vector<Eigen::Index>& rows,
 
 Result<Eigen::MatrixXd> FolderEngine::run(const Eigen::MatrixXd& theta,
                                           const ForEachIndex& executor, const Observer& observer) {
-  const auto rows = rows_of(theta);
-  if (!rows) return tl::unexpected(rows.error());
+  const auto rows = TRY(rows_of(theta));
   std::vector<Eigen::Index> missing;
-  std::ranges::copy_if(*rows, std::back_inserter(missing), [&](Eigen::Index row) {
+  std::ranges::copy_if(rows, std::back_inserter(missing), [&](Eigen::Index row) {
     return !runs_.done[static_cast<std::size_t>(row)];
   });
   if (!missing.empty() && behind_ == nullptr) {
     return failure(ErrorCode::not_found,
-                   fmt::format("{} of {} runs are missing in {}", missing.size(), rows->size(),
+                   fmt::format("{} of {} runs are missing in {}", missing.size(), rows.size(),
                                folder_.string()));
   }
   const auto total = static_cast<int>(runs_.done.size());
@@ -97,7 +94,7 @@ Result<Eigen::MatrixXd> FolderEngine::run(const Eigen::MatrixXd& theta,
     if (!ran) return tl::unexpected(ran.error());
     next = end;
   }
-  return Eigen::MatrixXd{runs_.outputs(*rows, Eigen::all)};
+  return Eigen::MatrixXd{runs_.outputs(rows, Eigen::all)};
 }
 
 }  // namespace recald::doe

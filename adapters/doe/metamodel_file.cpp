@@ -12,24 +12,19 @@ namespace recald::doe {
 using model::metamodel::NamedCoefficient;
 
 Result<std::vector<NamedCoefficient>> read_metamodel(const std::filesystem::path& file) {
-  auto table = TableReader::open(file);
-  if (!table) return tl::unexpected(table.error());
-  const auto term_column = table->require("term");
-  if (!term_column) return tl::unexpected(term_column.error());
-  const auto coefficient_column = table->require("coef");
-  if (!coefficient_column) return tl::unexpected(coefficient_column.error());
+  auto table = TRY(TableReader::open(file));
+  const auto term_column = TRY(table.require("term"));
+  const auto coefficient_column = TRY(table.require("coef"));
   std::vector<NamedCoefficient> terms;
   std::set<std::string> seen;
   for (;;) {
-    const auto more = table->next();
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) break;
-    std::string term{table->text(*term_column)};
-    if (term.empty()) return table->wrong("column 'term' is blank");
-    if (!seen.insert(term).second) return table->wrong(fmt::format("term '{}' comes twice", term));
-    const auto coefficient = table->number(*coefficient_column);
-    if (!coefficient) return tl::unexpected(coefficient.error());
-    terms.push_back({std::move(term), *coefficient});
+    const auto more = TRY(table.next());
+    if (!more) break;
+    std::string term{table.text(term_column)};
+    if (term.empty()) return table.wrong("column 'term' is blank");
+    if (!seen.insert(term).second) return table.wrong(fmt::format("term '{}' comes twice", term));
+    const auto coefficient = TRY(table.number(coefficient_column));
+    terms.push_back({std::move(term), coefficient});
   }
   if (!terms.empty()) return terms;
   return failure(ErrorCode::not_enough_data,

@@ -27,9 +27,7 @@ Result<Columns> find_columns(const TableReader& table) {
   std::array<std::size_t, 5> required{};
   constexpr std::array<std::string_view, 5> names{"parameter", "unit", "min", "mode", "max"};
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto column = table.require(names[i]);
-    if (!column) return tl::unexpected(column.error());
-    required[i] = *column;
+    required[i] = TRY(table.require(names[i]));
   }
   return Columns{required[0],     required[1], required[2],
                  required[3],     required[4], table.find("distribution"),
@@ -48,9 +46,7 @@ Result<PriorNumbers> read_numbers(const TableReader& table, const Columns& colum
                                                          columns.sd};
   std::array<std::optional<double>, 4> values;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto value = number_if_any(table, places[i]);
-    if (!value) return tl::unexpected(value.error());
-    values[i] = *value;
+    values[i] = TRY(number_if_any(table, places[i]));
   }
   return PriorNumbers{values[0], values[1], values[2], values[3]};
 }
@@ -62,11 +58,10 @@ Result<Parameter> read_parameter(const TableReader& table, const Columns& column
   if (std::ranges::find(earlier, name, &Parameter::name) != earlier.end()) {
     return table.wrong(fmt::format("parameter '{}' comes twice", name));
   }
-  const auto numbers = read_numbers(table, columns);
-  if (!numbers) return tl::unexpected(numbers.error());
+  const auto numbers = TRY(read_numbers(table, columns));
   std::string_view distribution = columns.distribution ? table.text(*columns.distribution) : "";
   if (distribution.empty()) distribution = "triangular";
-  auto prior = Prior::named(distribution, *numbers);
+  auto prior = Prior::named(distribution, numbers);
   if (!prior) {
     Error error =
         table.wrong(fmt::format("parameter '{}': {}", name, prior.error().message)).value();
@@ -103,18 +98,14 @@ struct NumbersOf {
 }  // namespace
 
 Result<std::vector<Parameter>> read_priors(const std::filesystem::path& file) {
-  auto table = TableReader::open(file);
-  if (!table) return tl::unexpected(table.error());
-  const auto columns = find_columns(*table);
-  if (!columns) return tl::unexpected(columns.error());
+  auto table = TRY(TableReader::open(file));
+  const auto columns = TRY(find_columns(table));
   std::vector<Parameter> parameters;
   for (;;) {
-    const auto more = table->next();
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) break;
-    auto parameter = read_parameter(*table, *columns, parameters);
-    if (!parameter) return tl::unexpected(parameter.error());
-    parameters.push_back(std::move(*parameter));
+    const auto more = TRY(table.next());
+    if (!more) break;
+    auto parameter = TRY(read_parameter(table, columns, parameters));
+    parameters.push_back(std::move(parameter));
   }
   if (!parameters.empty()) return parameters;
   return failure(ErrorCode::not_enough_data,

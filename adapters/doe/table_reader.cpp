@@ -10,10 +10,9 @@
 namespace recald::doe {
 
 Result<TableReader> TableReader::open(const std::filesystem::path& file) {
-  auto source = csv::open_file(file, "file");
-  if (!source) return tl::unexpected(source.error());
-  TableReader table{file, std::move(*source)};
-  if (const auto header = table.read_header(); !header) return tl::unexpected(header.error());
+  auto source = TRY(csv::open_file(file, "file"));
+  TableReader table{file, std::move(source)};
+  TRY(table.read_header());
   return table;
 }
 
@@ -39,9 +38,8 @@ Result<bool> TableReader::next_line(csv::Line& line) {
 
 Result<void> TableReader::read_header() {
   csv::Line line{};
-  const auto found = next_line(line);
-  if (!found) return tl::unexpected(found.error());
-  if (!*found) return wrong_header("the file is empty; its first line has to name the columns");
+  const auto found = TRY(next_line(line));
+  if (!found) return wrong_header("the file is empty; its first line has to name the columns");
   if (line.text.find(';') != std::string_view::npos) {
     return wrong_header("separate columns by commas, not semicolons");
   }
@@ -101,10 +99,9 @@ Result<std::optional<double>> TableReader::number_or_blank(std::size_t column) c
 }
 
 Result<int> TableReader::whole_number(std::size_t column) const {
-  const auto value = number(column);
-  if (!value) return tl::unexpected(value.error());
-  if (*value >= 0.0 && *value <= 999'999'999.0 && *value == std::floor(*value)) {
-    return static_cast<int>(*value);
+  const auto value = TRY(number(column));
+  if (value >= 0.0 && value <= 999'999'999.0 && value == std::floor(value)) {
+    return static_cast<int>(value);
   }
   return wrong(fmt::format("column '{}' is '{}'; write a whole number, such as 17",
                            columns_[column], text(column)));
