@@ -43,18 +43,14 @@ std::optional<std::string> field_of(std::string_view description) {
 
 Result<std::vector<ComponentSize>> read_component_sizes(const std::filesystem::path& file) {
   auto database =
-      sqlite::Database::open(file, {.access = sqlite::Database::Access::read_only, .vfs = {}});
-  if (!database) return tl::unexpected(database.error());
+      TRY(sqlite::Database::open(file, {.access = sqlite::Database::Access::read_only, .vfs = {}}));
   auto statement =
-      database->prepare("SELECT CompType, CompName, Description, Value FROM ComponentSizes");
-  if (!statement) return tl::unexpected(statement.error());
+      TRY(database.prepare("SELECT CompType, CompName, Description, Value FROM ComponentSizes"));
   std::vector<ComponentSize> sizes;
   for (;;) {
-    const auto has_row = statement->step();
-    if (!has_row) return tl::unexpected(has_row.error());
-    if (!*has_row) return sizes;
-    sizes.push_back(
-        {statement->text(0), statement->text(1), statement->text(2), statement->real(3)});
+    const auto has_row = TRY(statement.step());
+    if (!has_row) return sizes;
+    sizes.push_back({statement.text(0), statement.text(1), statement.text(2), statement.real(3)});
   }
 }
 

@@ -146,22 +146,19 @@ std::string name_in(std::string_view line) {
 /// Of meters in joules. Where one is reported at several intervals the sums are the same.
 Result<std::map<std::string, double>> totals_in(const std::filesystem::path& file) {
   auto database =
-      sqlite::Database::open(file, {.access = sqlite::Database::Access::read_only, .vfs = {}});
-  if (!database) return tl::unexpected(database.error());
-  auto statement = database->prepare(
+      TRY(sqlite::Database::open(file, {.access = sqlite::Database::Access::read_only, .vfs = {}}));
+  auto statement = TRY(database.prepare(
       "SELECT m.Name, sum(d.Value) FROM ReportDataDictionary m "
       "JOIN ReportData d ON d.ReportDataDictionaryIndex = m.ReportDataDictionaryIndex "
       "JOIN Time t ON t.TimeIndex = d.TimeIndex "
       "JOIN EnvironmentPeriods e ON e.EnvironmentPeriodIndex = t.EnvironmentPeriodIndex "
       "WHERE m.IsMeter = 1 AND m.Units = 'J' AND e.EnvironmentType = 3 "
-      "AND coalesce(t.WarmupFlag, 0) = 0 GROUP BY m.ReportDataDictionaryIndex");
-  if (!statement) return tl::unexpected(statement.error());
+      "AND coalesce(t.WarmupFlag, 0) = 0 GROUP BY m.ReportDataDictionaryIndex"));
   std::map<std::string, double> totals;
   for (;;) {
-    const auto has_row = statement->step();
-    if (!has_row) return tl::unexpected(has_row.error());
-    if (!*has_row) return totals;
-    totals[statement->text(0)] = statement->real(1) * kJoule_kWh;
+    const auto has_row = TRY(statement.step());
+    if (!has_row) return totals;
+    totals[statement.text(0)] = statement.real(1) * kJoule_kWh;
   }
 }
 
@@ -193,9 +190,7 @@ void ask_for_meters(Json& objects) {
 Result<std::vector<ReportedMeter>> what_is_reported(const std::filesystem::path& folder) {
   std::map<std::string, double> totals;
   if (std::filesystem::exists(folder / "eplusout.sql")) {
-    auto read = totals_in(folder / "eplusout.sql");
-    if (!read) return tl::unexpected(read.error());
-    totals = std::move(*read);
+    totals = TRY(totals_in(folder / "eplusout.sql"));
   }
   std::vector<ReportedMeter> meters;
   std::ifstream dictionary{folder / "eplusout.mdd"};

@@ -163,9 +163,7 @@ Result<std::unique_ptr<EnergyPlusEngine>> EnergyPlusEngine::make(
           ErrorCode::invalid_value,
           fmt::format("there is no weather for {}, which has months of the model", year));
     }
-    if (auto added = digest.add_file(weather->second); !added) {
-      return tl::unexpected(added.error());
-    }
+    TRY(digest.add_file(weather->second));
   }
   return std::unique_ptr<EnergyPlusEngine>{
       new EnergyPlusEngine{std::move(setup), calendar, digest.hex()}};
@@ -191,26 +189,23 @@ Result<std::vector<MeterOutput>> EnergyPlusEngine::simulate_year(
   Json prepared = objects;
   const std::vector<std::string> names = meters_of(setup_.outputs);
   prepare_objects({.first = first, .last = last, .meters = names}, prepared);
-  const auto sql = simulate(prepared, setup_.weather.at(year), folder, setup_.program,
-                            setup_.limits, keep_going);
-  if (!sql) return tl::unexpected(sql.error());
-  return read_meters(*sql, names, calendar_.standard_offset(std::chrono::year{year}));
+  const auto sql = TRY(simulate(prepared, setup_.weather.at(year), folder, setup_.program,
+                                setup_.limits, keep_going));
+  return read_meters(sql, names, calendar_.standard_offset(std::chrono::year{year}));
 }
 
 Result<RunFigures> EnergyPlusEngine::run_year(const Eigen::VectorXd& values, int year,
                                               const std::filesystem::path& folder,
                                               const std::function<bool()>& keep_going) const {
   const Day new_year = std::chrono::year{year} / 1 / 1;
-  auto meters = simulate_year(objects_at(values, new_year), year, folder, keep_going);
-  if (!meters) return tl::unexpected(meters.error());
+  auto meters = TRY(simulate_year(objects_at(values, new_year), year, folder, keep_going));
   for (const Day day : changes_in(setup_.parameters, year)) {
-    const auto since = simulate_year(objects_at(values, day), year, folder, keep_going);
-    if (!since) return tl::unexpected(since.error());
-    continue_with(*since, calendar_.day_span(day).begin, *meters);
+    const auto since = TRY(simulate_year(objects_at(values, day), year, folder, keep_going));
+    continue_with(since, calendar_.day_span(day).begin, meters);
   }
   return RunFigures{
-      monthly_figures(*meters, setup_.outputs, setup_.months, calendar_, setup_.peak_window),
-      daily_figures(*meters, setup_.outputs, days_, calendar_, setup_.peak_window)};
+      monthly_figures(meters, setup_.outputs, setup_.months, calendar_, setup_.peak_window),
+      daily_figures(meters, setup_.outputs, days_, calendar_, setup_.peak_window)};
 }
 
 Json EnergyPlusEngine::objects_at(const Eigen::VectorXd& values, Day day) const {
@@ -257,9 +252,7 @@ Result<RunFigures> EnergyPlusEngine::run_row(const Eigen::VectorXd& values,
   if (!are_whole(figures.months) || !are_whole(figures.days)) {
     return failure(ErrorCode::not_finite, "EnergyPlus did not report all of a month");
   }
-  if (auto written = system::write_file(kept, kept_text(figures)); !written) {
-    return tl::unexpected(written.error());
-  }
+  TRY(system::write_file(kept, kept_text(figures)));
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);
   return figures;
@@ -269,7 +262,7 @@ Result<Eigen::MatrixXd> EnergyPlusEngine::run(const Eigen::MatrixXd& theta,
                                               const ForEachIndex& executor,
                                               const Observer& observer) {
   assert(theta.cols() == static_cast<Eigen::Index>(setup_.parameters.size()));
-  if (auto made = system::make_folder(setup_.folder); !made) return tl::unexpected(made.error());
+  TRY(system::make_folder(setup_.folder));
   const auto rows = static_cast<std::size_t>(theta.rows());
   std::vector<Result<RunFigures>> results(rows, RunFigures{});
   std::atomic<int> done = 0;

@@ -303,10 +303,9 @@ Result<KnownParameter> known(const Finder& finder, const model::ParameterDefinit
                                "under a name of your own if you know better",
                                definition.name));
   }
-  auto parameter = model::make_parameter(definition, found.design, prior);
-  if (!parameter) return tl::unexpected(parameter.error());
+  auto parameter = TRY(model::make_parameter(definition, found.design, prior));
   return KnownParameter{
-      {std::move(*parameter), std::move(found.targets), found.change, found.design},
+      {std::move(parameter), std::move(found.targets), found.change, found.design},
       std::string{definition.label},
       std::string{definition.group}};
 }

@@ -23,23 +23,20 @@ Result<Database> open(const std::filesystem::path& file) {
 }
 
 Result<std::vector<std::string>> names_in(Database& database) {
-  auto statement = database.prepare(
+  auto statement = TRY(database.prepare(
       "SELECT DISTINCT Name FROM ReportDataDictionary WHERE IsMeter = 1 AND Units = 'J' "
-      "ORDER BY Name");
-  if (!statement) return tl::unexpected(statement.error());
+      "ORDER BY Name"));
   std::vector<std::string> names;
   for (;;) {
-    const auto has_row = statement->step();
-    if (!has_row) return tl::unexpected(has_row.error());
-    if (!*has_row) return names;
-    names.push_back(statement->text(0));
+    const auto has_row = TRY(statement.step());
+    if (!has_row) return names;
+    names.push_back(statement.text(0));
   }
 }
 
 tl::unexpected<Error> no_such_meter(Database& database, const std::string& name) {
-  const auto names = names_in(database);
-  if (!names) return tl::unexpected(names.error());
-  const std::vector<std::string_view> views{names->begin(), names->end()};
+  const auto names = TRY(names_in(database));
+  const std::vector<std::string_view> views{names.begin(), names.end()};
   const std::string_view nearest = nearest_name(name, views);
   return failure(ErrorCode::not_found,
                  fmt::format("the model does not report a meter '{}'{}", name,
@@ -57,53 +54,47 @@ Instant end_of(int year, int month, int day, int hour, int minute) {
 using Starts = std::unordered_map<std::int64_t, Instant>;
 
 Result<Starts> read_starts(Database& database, std::chrono::seconds utc_offset) {
-  auto statement = database.prepare(
+  auto statement = TRY(database.prepare(
       "SELECT t.TimeIndex, t.Year, t.Month, t.Day, t.Hour, t.Minute, t.Interval FROM Time t "
       "JOIN EnvironmentPeriods e ON e.EnvironmentPeriodIndex = t.EnvironmentPeriodIndex "
-      "WHERE e.EnvironmentType = ?1 AND coalesce(t.WarmupFlag, 0) = 0");
-  if (!statement) return tl::unexpected(statement.error());
-  statement->bind(0, std::int64_t{kWeatherRun});
+      "WHERE e.EnvironmentType = ?1 AND coalesce(t.WarmupFlag, 0) = 0"));
+  statement.bind(0, std::int64_t{kWeatherRun});
   Starts starts;
   for (;;) {
-    const auto has_row = statement->step();
-    if (!has_row) return tl::unexpected(has_row.error());
-    if (!*has_row) return starts;
-    const auto whole = [&](int column) { return static_cast<int>(statement->integer(column)); };
+    const auto has_row = TRY(statement.step());
+    if (!has_row) return starts;
+    const auto whole = [&](int column) { return static_cast<int>(statement.integer(column)); };
     const Instant end = end_of(whole(1), whole(2), whole(3), whole(4), whole(5));
-    starts.emplace(statement->integer(0), end - std::chrono::minutes{whole(6)} - utc_offset);
+    starts.emplace(statement.integer(0), end - std::chrono::minutes{whole(6)} - utc_offset);
   }
 }
 
 /// What a meter is called in the run's data, or that there is no such meter.
 Result<std::int64_t> meter_number(Database& database, const std::string& name) {
-  auto statement = database.prepare(
+  auto statement = TRY(database.prepare(
       "SELECT ReportDataDictionaryIndex FROM ReportDataDictionary WHERE IsMeter = 1 AND Name = ?1 "
-      "COLLATE NOCASE AND ReportingFrequency LIKE '%Timestep'");
-  if (!statement) return tl::unexpected(statement.error());
-  statement->bind(0, std::string_view{name});
-  const auto has_row = statement->step();
-  if (!has_row) return tl::unexpected(has_row.error());
-  if (*has_row) return statement->integer(0);
+      "COLLATE NOCASE AND ReportingFrequency LIKE '%Timestep'"));
+  statement.bind(0, std::string_view{name});
+  const auto has_row = TRY(statement.step());
+  if (has_row) return statement.integer(0);
   return no_such_meter(database, name);
 }
 
 /// One pass over the data, which has no index but its order in time.
 Result<void> read_data(Database& database, const Starts& starts,
                        const std::unordered_map<std::int64_t, MeterOutput*>& meters) {
-  auto statement = database.prepare(
+  auto statement = TRY(database.prepare(
       "SELECT TimeIndex, ReportDataDictionaryIndex, Value FROM ReportData ORDER BY "
-      "ReportDataIndex");
-  if (!statement) return tl::unexpected(statement.error());
+      "ReportDataIndex"));
   for (;;) {
-    const auto has_row = statement->step();
-    if (!has_row) return tl::unexpected(has_row.error());
-    if (!*has_row) return {};
-    const auto meter = meters.find(statement->integer(1));
+    const auto has_row = TRY(statement.step());
+    if (!has_row) return {};
+    const auto meter = meters.find(statement.integer(1));
     if (meter == meters.end()) continue;
-    const auto start = starts.find(statement->integer(0));
+    const auto start = starts.find(statement.integer(0));
     if (start == starts.end()) continue;
     meter->second->starts.push_back(start->second);
-    meter->second->energy_kWh.push_back(statement->real(2) / kJoulePerKilowattHour);
+    meter->second->energy_kWh.push_back(statement.real(2) / kJoulePerKilowattHour);
   }
 }
 
@@ -112,23 +103,18 @@ Result<void> read_data(Database& database, const Starts& starts,
 Result<std::vector<MeterOutput>> read_meters(const std::filesystem::path& file,
                                              const std::vector<std::string>& names,
                                              std::chrono::seconds utc_offset) {
-  auto database = open(file);
-  if (!database) return tl::unexpected(database.error());
-  const auto starts = read_starts(*database, utc_offset);
-  if (!starts) return tl::unexpected(starts.error());
+  auto database = TRY(open(file));
+  const auto starts = TRY(read_starts(database, utc_offset));
   std::vector<MeterOutput> meters(names.size());
   std::unordered_map<std::int64_t, MeterOutput*> by_number;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto number = meter_number(*database, names[i]);
-    if (!number) return tl::unexpected(number.error());
+    const auto number = TRY(meter_number(database, names[i]));
     meters[i] = {names[i], {}, {}};
-    by_number[*number] = &meters[i];
+    by_number[number] = &meters[i];
   }
-  if (auto read = read_data(*database, *starts, by_number); !read) {
-    return tl::unexpected(read.error());
-  }
+  TRY(read_data(database, starts, by_number));
   for (const MeterOutput& meter : meters) {
-    if (meter.starts.empty()) return no_such_meter(*database, meter.name);
+    if (meter.starts.empty()) return no_such_meter(database, meter.name);
   }
   return meters;
 }

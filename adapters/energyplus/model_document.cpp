@@ -128,9 +128,7 @@ class Search {
 }  // namespace
 
 Result<ModelDocument> read_epjson(const std::filesystem::path& file) {
-  if (auto is_file = system::require_file(file, "EnergyPlus model"); !is_file) {
-    return tl::unexpected(is_file.error());
-  }
+  TRY(system::require_file(file, "EnergyPlus model"));
   std::ifstream in{file, std::ios::binary};
   const std::string text{std::istreambuf_iterator<char>{in}, {}};
   if (in.bad()) return failure(ErrorCode::io_failed, fmt::format("cannot read {}", file.string()));

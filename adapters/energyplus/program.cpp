@@ -69,32 +69,29 @@ Result<std::filesystem::path> locate(const std::filesystem::path& configured) {
 }  // namespace
 
 Result<Program> find_program(const std::filesystem::path& configured) {
-  const auto executable = locate(configured);
-  if (!executable) return tl::unexpected(executable.error());
-  const auto scratch = system::ScratchFolder::make();
-  if (!scratch) return tl::unexpected(scratch.error());
-  const std::filesystem::path said = scratch->path() / "version.txt";
-  const auto ended = system::run_child({.program = *executable,
-                                        .arguments = {"--version"},
-                                        .folder = scratch->path(),
-                                        .output = said,
-                                        .time_max = std::chrono::seconds{60}},
-                                       {});
-  if (!ended) return tl::unexpected(ended.error());
+  const auto executable = TRY(locate(configured));
+  const auto scratch = TRY(system::ScratchFolder::make());
+  const std::filesystem::path said = scratch.path() / "version.txt";
+  TRY(system::run_child({.program = executable,
+                         .arguments = {"--version"},
+                         .folder = scratch.path(),
+                         .output = said,
+                         .time_max = std::chrono::seconds{60}},
+                        {}));
   std::ifstream in{said};
   const std::string text{std::istreambuf_iterator<char>{in}, {}};
   std::smatch match;
   if (!std::regex_search(text, match, std::regex{R"(Version (\d+)\.(\d+))"})) {
     return failure(ErrorCode::io_failed,
                    fmt::format("{} does not say its version, as EnergyPlus does; it said '{}'",
-                               executable->string(), text.substr(0, 200)));
+                               executable.string(), text.substr(0, 200)));
   }
   if (std::stoi(match[1]) < kOldestMajor) {
     return failure(ErrorCode::unsupported,
                    fmt::format("{} is EnergyPlus {}.{}; recald needs {}.0 or later",
-                               executable->string(), match[1].str(), match[2].str(), kOldestMajor));
+                               executable.string(), match[1].str(), match[2].str(), kOldestMajor));
   }
-  return Program{*executable, fmt::format("{}.{}", match[1].str(), match[2].str())};
+  return Program{executable, fmt::format("{}.{}", match[1].str(), match[2].str())};
 }
 
 }  // namespace recald::energyplus

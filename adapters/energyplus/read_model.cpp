@@ -48,14 +48,13 @@ Result<void> run_helper(std::string_view name, const std::vector<std::string>& a
     }
   }
   const fs::path said = folder / "said.txt";
-  const auto ended = system::run_child({.program = helper,
-                                        .arguments = arguments,
-                                        .folder = folder,
-                                        .output = said,
-                                        .time_max = kLongest},
-                                       {});
-  if (!ended) return tl::unexpected(ended.error());
-  if (ended->ending == system::Ending::exited && ended->exit_code == 0) return {};
+  const auto ended = TRY(system::run_child({.program = helper,
+                                            .arguments = arguments,
+                                            .folder = folder,
+                                            .output = said,
+                                            .time_max = kLongest},
+                                           {}));
+  if (ended.ending == system::Ending::exited && ended.exit_code == 0) return {};
   std::string words = file_text(said).substr(0, 400);
   std::ranges::replace_if(
       words, [](char c) { return c == '\n' || c == '\r'; }, ' ');
@@ -64,12 +63,9 @@ Result<void> run_helper(std::string_view name, const std::vector<std::string>& a
 }
 
 Result<ModelDocument> convert(const fs::path& file, const Program& program) {
-  if (auto is_file = system::require_file(file, "EnergyPlus model"); !is_file) {
-    return tl::unexpected(is_file.error());
-  }
-  const auto scratch = system::ScratchFolder::make();
-  if (!scratch) return tl::unexpected(scratch.error());
-  const fs::path& folder = scratch->path();
+  TRY(system::require_file(file, "EnergyPlus model"));
+  const auto scratch = TRY(system::ScratchFolder::make());
+  const fs::path& folder = scratch.path();
   fs::path idf = folder / "in.idf";
   std::error_code failed;
   fs::copy_file(file, idf, failed);
@@ -78,15 +74,11 @@ Result<ModelDocument> convert(const fs::path& file, const Program& program) {
                    fmt::format("'{}' cannot be copied: {}", file.string(), failed.message()));
   }
   if (to_lower(file_text(idf)).find("hvactemplate:") != std::string::npos) {
-    if (auto ran = run_helper("ExpandObjects", {}, program, folder); !ran) {
-      return tl::unexpected(ran.error());
-    }
+    TRY(run_helper("ExpandObjects", {}, program, folder));
     const fs::path expanded = folder / "expanded.idf";
     if (fs::exists(expanded, failed)) fs::rename(expanded, idf, failed);
   }
-  if (auto ran = run_helper("ConvertInputFormat", {"in.idf"}, program, folder); !ran) {
-    return tl::unexpected(ran.error());
-  }
+  TRY(run_helper("ConvertInputFormat", {"in.idf"}, program, folder));
   const fs::path converted = folder / "in.epJSON";
   if (!fs::exists(converted, failed)) {
     return failure(ErrorCode::malformed,

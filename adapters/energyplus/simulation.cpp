@@ -86,31 +86,28 @@ Result<std::filesystem::path> simulate(const Json& objects, const std::filesyste
                                        const std::function<bool()>& keep_going) {
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);
-  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
-  if (auto written = system::write_file(folder / kModelFile, objects.dump()); !written) {
-    return tl::unexpected(written.error());
-  }
+  TRY(system::make_folder(folder));
+  TRY(system::write_file(folder / kModelFile, objects.dump()));
   const auto ended =
-      system::run_child({.program = program.executable,
-                         .arguments = {"--weather", std::filesystem::absolute(weather).string(),
-                                       "--output-directory", ".", std::string{kModelFile}},
-                         .folder = folder,
-                         .output = folder / "energyplus.log",
-                         .time_max = limits.time_max,
-                         .memory_max_bytes = limits.memory_max_bytes},
-                        keep_going);
-  if (!ended) return tl::unexpected(ended.error());
-  if (ended->ending == system::Ending::stopped) return failure(ErrorCode::cancelled, "stopped");
-  if (ended->ending == system::Ending::over_limit) {
+      TRY(system::run_child({.program = program.executable,
+                             .arguments = {"--weather", std::filesystem::absolute(weather).string(),
+                                           "--output-directory", ".", std::string{kModelFile}},
+                             .folder = folder,
+                             .output = folder / "energyplus.log",
+                             .time_max = limits.time_max,
+                             .memory_max_bytes = limits.memory_max_bytes},
+                            keep_going));
+  if (ended.ending == system::Ending::stopped) return failure(ErrorCode::cancelled, "stopped");
+  if (ended.ending == system::Ending::over_limit) {
     return failure(ErrorCode::out_of_range,
                    fmt::format("EnergyPlus was still running after {} s and was ended; see {}",
                                limits.time_max.count(), (folder / "energyplus.log").string()));
   }
   const ErrorFile said = read_error_file(folder / "eplusout.err");
   const bool went_well =
-      ended->ending == system::Ending::exited && ended->exit_code == 0 && said.fatal.empty();
+      ended.ending == system::Ending::exited && ended.exit_code == 0 && said.fatal.empty();
   if (went_well) return folder / kOutputFile;
-  return failure(ErrorCode::invalid_value, failed_words(said, *ended, folder));
+  return failure(ErrorCode::invalid_value, failed_words(said, ended, folder));
 }
 
 }  // namespace recald::energyplus

@@ -47,25 +47,19 @@ Result<TriedModel> try_model(const ModelDocument& model, const std::vector<std::
   const std::string name = name_of_trial(model, meters, program);
   const std::filesystem::path kept = folder / (name + ".json");
   if (auto tried = kept_trial(kept, model.version)) return std::move(*tried);
-  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  TRY(system::make_folder(folder));
   Json prepared = model.objects;
   prepare_objects({.first = day, .last = day, .meters = meters}, prepared);
-  const auto sql = simulate(
+  const auto sql = TRY(simulate(
       prepared, weather, folder / name, program, limits,
-      keep_going ? keep_going : [] { return true; });
-  if (!sql) return tl::unexpected(sql.error());
-  if (const auto reported = read_meters(*sql, meters, {}); !reported) {
-    return tl::unexpected(reported.error());
-  }
-  const auto sizes = read_component_sizes(*sql);
-  if (!sizes) return tl::unexpected(sizes.error());
+      keep_going ? keep_going : [] { return true; }));
+  TRY(read_meters(sql, meters, {}));
+  const auto sizes = TRY(read_component_sizes(sql));
   TriedModel tried{model, {}};
-  tried.sizes = freeze_sizes(*sizes, tried.model.objects);
+  tried.sizes = freeze_sizes(sizes, tried.model.objects);
   const Json outcome = {
       {"frozen", tried.sizes.frozen}, {"left", tried.sizes.left}, {"objects", tried.model.objects}};
-  if (auto written = system::write_file(kept, outcome.dump()); !written) {
-    return tl::unexpected(written.error());
-  }
+  TRY(system::write_file(kept, outcome.dump()));
   std::error_code ignored;
   std::filesystem::remove_all(folder / name, ignored);
   return tried;
