@@ -6,8 +6,8 @@
 #include <array>
 
 #include "adapters/system/read_file.hpp"
+#include "adapters/toml/toml_reader.hpp"
 #include "daemon/site/config/server_access.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 namespace {

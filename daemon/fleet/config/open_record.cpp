@@ -7,9 +7,7 @@ namespace recald::daemon {
 Result<std::unique_ptr<postgres::Connection>> open_record(const RecordConfig& config) {
   std::string password;
   if (!config.password_file.empty()) {
-    auto read = http::read_password_file(config.password_file);
-    if (!read) return tl::unexpected(read.error());
-    password = std::move(*read);
+    password = TRY(http::read_password_file(config.password_file));
   }
   return postgres::Connection::open(config.url, password);
 }

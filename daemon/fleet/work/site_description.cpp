@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adapters/system/read_file.hpp"
-#include "daemon/site/config/toml_reader.hpp"
+#include "adapters/toml/toml_reader.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -56,9 +56,7 @@ Result<void> add_file(const fs::path& file, const fs::path& folder,
                     "would not find it; put it beside the site file",
                     file.string()));
   }
-  auto bytes = system::read_file(file);
-  if (!bytes) return tl::unexpected(bytes.error());
-  description.files[name] = std::move(*bytes);
+  description.files[name] = TRY(system::read_file(file));
   return {};
 }
 
@@ -81,7 +79,7 @@ Result<void> add_path(const fs::path& path, const fs::path& folder,
 
 Result<record::SiteDescription> describe(const OpenSite& site) {
   const SiteConfig& config = site.config;
-  if (auto modelled = require_model(config); !modelled) return tl::unexpected(modelled.error());
+  TRY(require_model(config));
   record::SiteDescription description{.id = config.id, .name = config.name};
   if (config.location) {
     description.latitude_deg = config.location->latitude_deg;
@@ -93,8 +91,7 @@ Result<record::SiteDescription> describe(const OpenSite& site) {
   description.site_file = config.file.filename().generic_string();
   const fs::path folder = fs::absolute(config.file).lexically_normal().parent_path();
   for (const fs::path& path : named_paths(config)) {
-    auto added = add_path(fs::absolute(path).lexically_normal(), folder, description);
-    if (!added) return tl::unexpected(added.error());
+    TRY(add_path(fs::absolute(path).lexically_normal(), folder, description));
   }
   return description;
 }

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "daemon/site/config/toml_reader.hpp"
+#include "adapters/toml/toml_reader.hpp"
 
 namespace recald::daemon {
 

@@ -1,8 +1,8 @@
 /// The [building] table of a site file.
 #pragma once
 
+#include "adapters/toml/toml_reader.hpp"
 #include "core/model/building.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 

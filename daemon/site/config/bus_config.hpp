@@ -7,8 +7,8 @@
 
 #include "adapters/modbus/connection.hpp"
 #include "adapters/modbus/register_map.hpp"
+#include "adapters/toml/toml_reader.hpp"
 #include "daemon/site/config/register_map_file.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 

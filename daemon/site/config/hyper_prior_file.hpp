@@ -15,8 +15,8 @@
 #include <string>
 #include <variant>
 
+#include "adapters/toml/toml_reader.hpp"
 #include "core/calibration/hyper_prior.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 

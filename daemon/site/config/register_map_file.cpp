@@ -373,9 +373,8 @@ tl::expected<RegisterMap, Problems> find_register_map(const std::string& name,
     if (!shipped) return tl::unexpected(Problems{shipped.error().message});
     text = *shipped;
   }
-  auto file = parse_register_map(text, name);
-  if (!file) return tl::unexpected(file.error());
-  return std::move(file->map);
+  auto file = TRY(parse_register_map(text, name));
+  return std::move(file.map);
 }
 
 const tl::expected<RegisterMap, Problems>& RegisterMaps::find(const std::string& name) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "adapters/modbus/register_map.hpp"
+#include "adapters/toml/toml_reader.hpp"
 #include "core/result.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 

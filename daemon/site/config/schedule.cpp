@@ -83,8 +83,8 @@ Result<CalendarTimes> parse_times(const std::vector<std::string_view>& fields) {
   CalendarTimes times;
   if (auto r = read_field(fields[0], kFields[0], times.minutes); !r)
     return tl::unexpected(r.error());
-  if (auto r = read_field(fields[1], kFields[1], times.hours); !r) return tl::unexpected(r.error());
-  if (auto r = read_field(fields[2], kFields[2], times.days); !r) return tl::unexpected(r.error());
+  TRY(read_field(fields[1], kFields[1], times.hours));
+  TRY(read_field(fields[2], kFields[2], times.days));
   if (auto r = read_field(fields[3], kFields[3], times.months); !r)
     return tl::unexpected(r.error());
   if (auto r = read_field(fields[4], kFields[4], times.weekdays); !r)
@@ -135,9 +135,8 @@ Result<Schedule> parse_schedule(std::string_view text) {
                                "fields \"minute hour day month weekday\" such as \"30 3 5 * *\"",
                                text));
   }
-  auto times = parse_times(fields);
-  if (!times) return tl::unexpected(times.error());
-  return Schedule{.when_a_month_closes = false, .times = *times};
+  auto times = TRY(parse_times(fields));
+  return Schedule{.when_a_month_closes = false, .times = times};
 }
 
 }  // namespace recald::daemon

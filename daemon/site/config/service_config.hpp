@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "adapters/toml/toml_reader.hpp"
 #include "daemon/site/config/schedule.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 

@@ -11,11 +11,11 @@
 
 #include "adapters/models/versions_folder.hpp"
 #include "adapters/system/regular_file.hpp"
+#include "adapters/toml/toml_reader.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/site/config/building_config.hpp"
 #include "daemon/site/config/site_path.hpp"
 #include "daemon/site/config/tariff_config.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
 
 namespace recald::daemon {

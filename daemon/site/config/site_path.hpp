@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/site/config/toml_reader.hpp"
+#include "adapters/toml/toml_reader.hpp"
 
 namespace recald::daemon {
 

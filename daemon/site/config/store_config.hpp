@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "daemon/site/config/toml_reader.hpp"
+#include "adapters/toml/toml_reader.hpp"
 
 namespace recald::daemon {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "adapters/table/table_shape.hpp"
+#include "adapters/toml/toml_reader.hpp"
 #include "core/metering/units.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 

@@ -1,8 +1,8 @@
 /// What energy costs and emits, as a site file says it.
 #pragma once
 
+#include "adapters/toml/toml_reader.hpp"
 #include "core/tariff/tariff.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "adapters/toml/toml_reader.hpp"
 #include "core/savings/measure.hpp"
 #include "daemon/site/config/site_config.hpp"
-#include "daemon/site/config/toml_reader.hpp"
 
 namespace recald::daemon {
 

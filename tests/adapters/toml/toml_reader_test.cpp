@@ -1,9 +1,9 @@
-#include "daemon/site/config/toml_reader.hpp"
+#include "adapters/toml/toml_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace recald::daemon::toml_reader_test {
+namespace recald::toml_reader_test {
 namespace {
 
 using std::chrono::days;
@@ -150,4 +150,4 @@ TEST(TomlReader, FinishSuggestsTheNearestOfTheKeysThatWereAskedFor) {
 }
 
 }  // namespace
-}  // namespace recald::daemon::toml_reader_test
+}  // namespace recald::toml_reader_test

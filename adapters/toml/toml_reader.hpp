@@ -6,7 +6,10 @@
 // are on; without it the same parser answers with an error.
 #define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,8 +17,9 @@
 #include <vector>
 
 #include "core/metering/civil_time.hpp"
+#include "core/result.hpp"
 
-namespace recald::daemon {
+namespace recald {
 
 /// What is wrong with a configuration, one sentence each, in order of discovery.
 using Problems = std::vector<std::string>;
@@ -28,6 +32,13 @@ struct NumberRange {
 inline constexpr NumberRange kPositive{std::numeric_limits<double>::min()};
 inline constexpr NumberRange kNotNegative{0.0};
 inline constexpr NumberRange kShare{0.0, 1.0};
+
+/// A word of a file and what it stands for.
+template <class T>
+struct Word {
+  std::string_view text;
+  T value;
+};
 
 /// Reads one table. Keys asked for are the known ones; call `finish` when all have been asked for.
 class TomlReader {
@@ -43,6 +54,7 @@ class TomlReader {
   /// "200ms" or as `duration`: for waits that are shorter than a second.
   [[nodiscard]] std::optional<std::chrono::milliseconds> milliseconds(std::string_view key);
   [[nodiscard]] std::optional<metering::Month> month(std::string_view key);
+  [[nodiscard]] std::optional<metering::Day> day(std::string_view key);
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count,
                                                            NumberRange range = {});
   [[nodiscard]] std::optional<std::vector<std::string>> texts(std::string_view key);
@@ -51,6 +63,14 @@ class TomlReader {
   /// One of the words; anything else is a problem that lists them.
   [[nodiscard]] std::optional<std::string> word(std::string_view key,
                                                 const std::vector<std::string_view>& words);
+  template <class T, std::size_t N>
+  [[nodiscard]] std::optional<T> word(std::string_view key, const std::array<Word<T>, N>& words) {
+    std::vector<std::string_view> texts;
+    for (const Word<T>& one : words) texts.push_back(one.text);
+    const auto text = word(key, texts);
+    const auto found = text ? std::ranges::find(words, *text, &Word<T>::text) : words.end();
+    return found == words.end() ? std::nullopt : std::optional{found->value};
+  }
   [[nodiscard]] std::optional<TomlReader> table(std::string_view key);
   [[nodiscard]] std::vector<TomlReader> tables(std::string_view key);
 
@@ -98,6 +118,11 @@ class TomlReader {
   std::vector<std::string> asked_;
 };
 
+/// @param what  "scenario": what the file is, for people.
+/// @return not_found, or malformed with the line
+[[nodiscard]] Result<toml::table> read_toml(const std::filesystem::path& file,
+                                            std::string_view what);
+
 /// What a file that is no TOML is answered: the line, and the parser's reason.
 [[nodiscard]] std::string syntax_problem(std::string_view file, const toml::parse_error& error);
 
@@ -107,4 +132,4 @@ class TomlReader {
 /// "03:15"
 [[nodiscard]] std::optional<std::chrono::minutes> parse_time_of_day(std::string_view text);
 
-}  // namespace recald::daemon
+}  // namespace recald

@@ -1,16 +1,17 @@
-#include "daemon/site/config/toml_reader.hpp"
+#include "adapters/toml/toml_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <sstream>
 
 #include "core/text/nearest.hpp"
 #include "core/text/printable.hpp"
 
-namespace recald::daemon {
+namespace recald {
 
 namespace {
 
@@ -26,6 +27,21 @@ std::string limits_of(NumberRange range) {
 std::string syntax_problem(std::string_view file, const toml::parse_error& error) {
   return printable(fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line,
                                error.description()));
+}
+
+Result<toml::table> read_toml(const std::filesystem::path& file, std::string_view what) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || !std::filesystem::is_regular_file(file)) {
+    return failure(ErrorCode::not_found,
+                   fmt::format("cannot read the {} {}; check its path", what, file.string()));
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  try {
+    return toml::parse(text.str());
+  } catch (const toml::parse_error& error) {
+    return failure(ErrorCode::malformed, syntax_problem(file.string(), error));
+  }
 }
 
 std::optional<std::chrono::seconds> parse_duration(std::string_view text) {
@@ -134,6 +150,15 @@ std::optional<metering::Month> TomlReader::month(std::string_view key) {
   const auto value = text(key);
   if (!value) return {};
   const auto parsed = metering::parse_month(*value);
+  if (parsed) return *parsed;
+  problem_at(key, fmt::format("'{}': {}", key, parsed.error().message));
+  return {};
+}
+
+std::optional<metering::Day> TomlReader::day(std::string_view key) {
+  const auto value = text(key);
+  if (!value) return {};
+  const auto parsed = metering::parse_day(*value);
   if (parsed) return *parsed;
   problem_at(key, fmt::format("'{}': {}", key, parsed.error().message));
   return {};
@@ -290,4 +315,4 @@ std::optional<std::chrono::minutes> parse_time_of_day(std::string_view text) {
   return std::chrono::hours{hour} + std::chrono::minutes{minute};
 }
 
-}  // namespace recald::daemon
+}  // namespace recald
