@@ -88,9 +88,7 @@ bool LineReader::skip_long_line(Line& line) {
 }
 
 Result<ByteSource> open_file(const std::filesystem::path& file, std::string_view what) {
-  if (auto is_file = system::require_file(file, what); !is_file) {
-    return tl::unexpected(is_file.error());
-  }
+  TRY(system::require_file(file, what));
   const std::string named = std::string{what} + " '" + file.string() + "'";
   std::shared_ptr<std::FILE> handle{std::fopen(file.c_str(), "rb"), CloseFile{}};
   if (!handle) {

@@ -103,9 +103,7 @@ class ReadingsReader {
         read_line(line);
         continue;
       }
-      const auto columns = read_header(line.text, fields_, name_);
-      if (!columns) return tl::unexpected(columns.error());
-      columns_ = *columns;
+      columns_ = TRY(read_header(line.text, fields_, name_));
       header_seen = true;
     }
     if (lines_.error()) return tl::unexpected(*lines_.error());
@@ -315,9 +313,8 @@ class ReadingsReader {
 
 Result<void> read_readings(const std::filesystem::path& file, const ReadingsOptions& options,
                            ReadingIntake& intake) {
-  auto source = open_file(file, "readings file");
-  if (!source) return tl::unexpected(source.error());
-  return ReadingsReader{std::move(*source), file.string(), options, intake}.run();
+  auto source = TRY(open_file(file, "readings file"));
+  return ReadingsReader{std::move(source), file.string(), options, intake}.run();
 }
 
 Result<ReadingsReport> read_readings(const std::filesystem::path& file,

@@ -179,10 +179,8 @@ class WeatherReader {
                                                         : weather::ValuesStand::at_its_start;
     csv_.values = values_taken(instant);
     const bool instants = csv_.values.values == weather::RecordedValues::instant;
-    auto series = weather::to_hourly(records_, csv_.step,
-                                     instants ? instant : weather::ValuesStand::over_the_record);
-    if (!series) return tl::unexpected(series.error());
-    csv_.series = std::move(*series);
+    csv_.series = TRY(weather::to_hourly(
+        records_, csv_.step, instants ? instant : weather::ValuesStand::over_the_record));
     return std::move(csv_);
   }
 
@@ -216,9 +214,8 @@ class WeatherReader {
 
 Result<WeatherCsv> read_weather(const std::filesystem::path& file,
                                 const WeatherCsvOptions& options) {
-  auto source = open_file(file, "weather file");
-  if (!source) return tl::unexpected(source.error());
-  return WeatherReader{std::move(*source), file.string(), options}.run();
+  auto source = TRY(open_file(file, "weather file"));
+  return WeatherReader{std::move(source), file.string(), options}.run();
 }
 
 Result<WeatherCsv> read_weather_text(std::string_view text, std::string_view name,

@@ -89,7 +89,7 @@ Result<Answer> post(const Post& post, const std::stop_token& stop) {
   Answer answer{};
   curl_easy_setopt(handle.get(), CURLOPT_WRITEFUNCTION, keep_beginning);
   curl_easy_setopt(handle.get(), CURLOPT_WRITEDATA, &answer.body);
-  if (auto done = deliver(handle, post.url); !done) return tl::unexpected(std::move(done.error()));
+  TRY(deliver(handle, post.url));
   curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &answer.status);
   curl_off_t wait_s = 0;
   curl_easy_getinfo(handle.get(), CURLINFO_RETRY_AFTER, &wait_s);
@@ -99,20 +99,19 @@ Result<Answer> post(const Post& post, const std::stop_token& stop) {
 
 Result<void> post_json(const Webhook& webhook, const std::string& document,
                        const std::stop_token& stop) {
-  const auto answer = post({.url = webhook.url,
-                            .token = webhook.token,
-                            .user = {},
-                            .password = {},
-                            .trusted_certificate = webhook.trusted_certificate,
-                            .content_type = "application/json",
-                            .headers = {},
-                            .body = document},
-                           stop);
-  if (!answer) return tl::unexpected(answer.error());
-  if (answer->status >= 200 && answer->status < 300) return {};
+  const auto answer = TRY(post({.url = webhook.url,
+                                .token = webhook.token,
+                                .user = {},
+                                .password = {},
+                                .trusted_certificate = webhook.trusted_certificate,
+                                .content_type = "application/json",
+                                .headers = {},
+                                .body = document},
+                               stop));
+  if (answer.status >= 200 && answer.status < 300) return {};
   return failure(ErrorCode::io_failed,
                  fmt::format("{} did not take the message: it answered with status {}",
-                             host_of(webhook.url), answer->status));
+                             host_of(webhook.url), answer.status));
 }
 
 Result<void> send_mail(const MailServer& server, const Mail& mail, const std::stop_token& stop) {

@@ -91,8 +91,8 @@ class EpwReader {
                                                           : ValuesStand::over_the_record} {}
 
   Result<EpwWeather> run(std::optional<int> year) {
-    if (auto headers = read_headers(); !headers) return tl::unexpected(headers.error());
-    if (auto rows = read_rows(); !rows) return tl::unexpected(rows.error());
+    TRY(read_headers());
+    TRY(read_rows());
     if (next_.month <= 12) return ends_early();
     return lay_on(year);
   }
@@ -237,9 +237,7 @@ class EpwReader {
                                " hours with a relative humidity above 100 % were set to 100 %");
     }
     const std::vector<WeatherRecord> records = records_of_year();
-    auto series = weather::to_hourly(records, std::chrono::hours{1}, stand_);
-    if (!series) return tl::unexpected(series.error());
-    weather_.series = std::move(*series);
+    weather_.series = TRY(weather::to_hourly(records, std::chrono::hours{1}, stand_));
     return std::move(weather_);
   }
 
@@ -290,9 +288,8 @@ class EpwReader {
 
 Result<EpwWeather> read_epw(const std::filesystem::path& file, std::optional<int> year,
                             weather::RecordedValues values) {
-  auto source = csv::open_file(file, "EPW file");
-  if (!source) return tl::unexpected(source.error());
-  return EpwReader{std::move(*source), file.string(), values}.run(year);
+  auto source = TRY(csv::open_file(file, "EPW file"));
+  return EpwReader{std::move(source), file.string(), values}.run(year);
 }
 
 Result<EpwWeather> read_epw_text(std::string_view text, std::string_view name,

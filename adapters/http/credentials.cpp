@@ -79,9 +79,7 @@ Result<void> check_permissions(const std::filesystem::path& file, const std::str
 /// The file's text without surrounding white space. @param how_to  As in check_permissions.
 Result<std::string> read_secret(const std::filesystem::path& file, const std::string& what,
                                 const char* how_to) {
-  if (auto checked = check_permissions(file, what, how_to); !checked) {
-    return tl::unexpected(checked.error());
-  }
+  TRY(check_permissions(file, what, how_to));
   std::ifstream in{file, std::ios::binary};
   std::string secret(kSecretFileMax, '\0');
   in.read(secret.data(), kSecretFileMax);

@@ -54,11 +54,10 @@ bool has_body(int status) { return status != 304 && status != 204; }
 
 Result<Request> request_head(const beast_http::request<beast_http::string_body>& message) {
   const auto text = message.target();
-  auto target = parse_target({text.data(), text.size()});
-  if (!target) return tl::unexpected(target.error());
+  auto target = TRY(parse_target({text.data(), text.size()}));
   Request request{.method = method_of(message.method()),
-                  .path = std::move(target->path),
-                  .query = std::move(target->query)};
+                  .path = std::move(target.path),
+                  .query = std::move(target.query)};
   for (const auto& field : message) {
     const auto name = field.name_string();
     const auto value = field.value();

@@ -204,18 +204,15 @@ Result<Tls> read_tls(const TlsFiles& files) {
 
 Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& context,
                                                const ServerOptions& options, Handler handler) {
-  const auto endpoint = endpoint_of(options);
-  if (!endpoint) return tl::unexpected(endpoint.error());
+  const auto endpoint = TRY(endpoint_of(options));
   auto shared = std::make_shared<Shared>(context, std::move(handler));
   if (options.tls) {
-    auto tls = read_tls(*options.tls);
-    if (!tls) return tl::unexpected(tls.error());
-    shared->tls = std::move(*tls);
+    shared->tls = TRY(read_tls(*options.tls));
   }
   boost::system::error_code error;
-  shared->acceptor.open(endpoint->protocol(), error);
+  shared->acceptor.open(endpoint.protocol(), error);
   if (!error) shared->acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-  if (!error) shared->acceptor.bind(*endpoint, error);
+  if (!error) shared->acceptor.bind(endpoint, error);
   if (!error) shared->acceptor.listen(boost::asio::socket_base::max_listen_connections, error);
   if (error) {
     return failure(ErrorCode::io_failed, "cannot listen on " + options.address + " port " +

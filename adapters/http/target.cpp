@@ -77,14 +77,12 @@ Result<std::map<std::string, std::string>> parse_query(std::string_view text) {
     text.remove_prefix(std::min(pair.size() + 1, text.size()));
     if (pair.empty()) continue;
     const std::size_t equals = pair.find('=');
-    auto name = decode(pair.substr(0, equals), true);
-    if (!name) return tl::unexpected(name.error());
-    auto value = decode(equals == std::string_view::npos ? "" : pair.substr(equals + 1), true);
-    if (!value) return tl::unexpected(value.error());
+    auto name = TRY(decode(pair.substr(0, equals), true));
+    auto value = TRY(decode(equals == std::string_view::npos ? "" : pair.substr(equals + 1), true));
     if (query.size() == kNamesMax) {
       return failure(ErrorCode::malformed, "the request's query has more than 32 parameters");
     }
-    const auto [at, is_new] = query.emplace(std::move(*name), std::move(*value));
+    const auto [at, is_new] = query.emplace(std::move(name), std::move(value));
     if (!is_new) {
       return failure(ErrorCode::malformed,
                      "the request's query has '" + at->first + "' more than once");
@@ -116,11 +114,9 @@ Result<Target> parse_target(std::string_view text) {
                    "the request's target has a '#', which stays with clients");
   }
   const std::size_t mark = text.find('?');
-  auto path = decode(text.substr(0, mark), false);
-  if (!path) return tl::unexpected(path.error());
-  auto query = parse_query(mark == std::string_view::npos ? "" : text.substr(mark + 1));
-  if (!query) return tl::unexpected(query.error());
-  return Target{std::move(*path), std::move(*query)};
+  auto path = TRY(decode(text.substr(0, mark), false));
+  auto query = TRY(parse_query(mark == std::string_view::npos ? "" : text.substr(mark + 1)));
+  return Target{std::move(path), std::move(query)};
 }
 
 }  // namespace recald::http

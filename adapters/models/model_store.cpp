@@ -87,11 +87,10 @@ Result<std::vector<std::string>> ModelStore::names() const {
 
 Result<std::string> ModelStore::full_name(std::string_view version) const {
   if (version == kBaseVersion) return std::string{version};
-  const auto known = names();
-  if (!known) return tl::unexpected(known.error());
+  const auto known = TRY(names());
   std::vector<std::string> fitting;
   std::string all{kBaseVersion};
-  for (const std::string& name : *known) {
+  for (const std::string& name : known) {
     if (version.size() >= kLeastDigits && name.starts_with(version)) fitting.push_back(name);
     all += ", " + short_version(name);
   }
@@ -119,12 +118,10 @@ Result<std::string> ModelStore::active_name() const {
 }
 
 Result<VersionList> ModelStore::list() const {
-  const auto known = names();
-  if (!known) return tl::unexpected(known.error());
-  auto in_force = active_name();
-  if (!in_force) return tl::unexpected(in_force.error());
-  VersionList list{{diagnosis::base_version(site_id_)}, std::move(*in_force), {}};
-  for (const std::string& name : *known) {
+  const auto known = TRY(names());
+  auto in_force = TRY(active_name());
+  VersionList list{{diagnosis::base_version(site_id_)}, std::move(in_force), {}};
+  for (const std::string& name : known) {
     auto version = read_version_file(file_of(name));
     if (version) {
       list.versions.push_back(std::move(*version));
@@ -138,31 +135,25 @@ Result<VersionList> ModelStore::list() const {
 }
 
 Result<ModelVersion> ModelStore::load(std::string_view version) const {
-  const auto name = full_name(version);
-  if (!name) return tl::unexpected(name.error());
-  if (*name == kBaseVersion) return diagnosis::base_version(site_id_);
-  return read_version_file(file_of(*name));
+  const auto name = TRY(full_name(version));
+  if (name == kBaseVersion) return diagnosis::base_version(site_id_);
+  return read_version_file(file_of(name));
 }
 
 Result<ModelVersion> ModelStore::active() const {
-  const auto name = active_name();
-  if (!name) return tl::unexpected(name.error());
-  return load(*name);
+  const auto name = TRY(active_name());
+  return load(name);
 }
 
 Result<ModelVersion> ModelStore::save(ModelVersion version) const {
-  auto parent = full_name(version.parent);
-  if (!parent) return tl::unexpected(parent.error());
-  version.parent = std::move(*parent);
+  version.parent = TRY(full_name(version.parent));
   auto named = named_by_content(std::move(version));
   if (!named) return named;
   const fs::path file = file_of(named->version);
   std::error_code ignored;
   if (fs::exists(file, ignored)) return read_version_file(file);
-  if (auto made = system::make_folder(folder_); !made) return tl::unexpected(made.error());
-  if (auto written = system::write_file(file, version_json(*named)); !written) {
-    return tl::unexpected(written.error());
-  }
+  TRY(system::make_folder(folder_));
+  TRY(system::write_file(file, version_json(*named)));
   return named;
 }
 
@@ -193,21 +184,14 @@ Result<void> ModelStore::mark_reverted(ModelVersion version, const ModelVersion&
 Result<ModelVersion> ModelStore::put_in_force(ModelVersion next, std::string_view action,
                                               const std::string& from,
                                               const std::string& at) const {
-  if (auto marked = mark(next, VersionStatus::accepted); !marked) {
-    return tl::unexpected(marked.error());
-  }
-  if (auto made = system::make_folder(folder_); !made) return tl::unexpected(made.error());
+  TRY(mark(next, VersionStatus::accepted));
+  TRY(system::make_folder(folder_));
   const fs::path history = folder_ / "history.jsonl";
-  auto text = text_of(history);
-  if (!text) return tl::unexpected(text.error());
+  auto text = TRY(text_of(history));
   const nlohmann::ordered_json line = {
       {"at", at}, {"action", action}, {"from", from}, {"to", next.version}};
-  if (auto written = system::write_file(history, *text + line.dump() + "\n"); !written) {
-    return tl::unexpected(written.error());
-  }
-  if (auto written = system::write_file(folder_ / "active", next.version + "\n"); !written) {
-    return tl::unexpected(written.error());
-  }
+  TRY(system::write_file(history, text + line.dump() + "\n"));
+  TRY(system::write_file(folder_ / "active", next.version + "\n"));
   next.status = VersionStatus::accepted;
   return next;
 }
@@ -215,10 +199,9 @@ Result<ModelVersion> ModelStore::put_in_force(ModelVersion next, std::string_vie
 Result<ModelVersion> ModelStore::activate(std::string_view version, const std::string& at) const {
   auto next = load(version);
   if (!next) return next;
-  const auto from = active_name();
-  if (!from) return tl::unexpected(from.error());
-  if (next->version == *from) return tl::unexpected(in_force_already(*from));
-  return put_in_force(std::move(*next), "activate", *from, at);
+  const auto from = TRY(active_name());
+  if (next->version == from) return tl::unexpected(in_force_already(from));
+  return put_in_force(std::move(*next), "activate", from, at);
 }
 
 Result<ModelVersion> ModelStore::revert(std::string_view target, const std::string& at) const {
@@ -232,11 +215,9 @@ Result<ModelVersion> ModelStore::revert(std::string_view target, const std::stri
   }
   auto next = load(target.empty() ? std::string_view{from->parent} : target);
   if (!next) return next;
-  if (auto allowed = check_revert(*next, from_name); !allowed) {
-    return tl::unexpected(allowed.error());
-  }
+  TRY(check_revert(*next, from_name));
   if (from) {
-    if (auto marked = mark_reverted(*from, *next); !marked) return tl::unexpected(marked.error());
+    TRY(mark_reverted(*from, *next));
   }
   return put_in_force(std::move(*next), "revert", from_name, at);
 }

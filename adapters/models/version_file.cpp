@@ -221,7 +221,7 @@ Result<void> check_numbers(const AddedEffect& added) {
 
 Result<ModelVersion> named_by_content(ModelVersion version) {
   for (const AddedEffect& added : version.effects) {
-    if (auto checked = check_numbers(added); !checked) return tl::unexpected(checked.error());
+    TRY(check_numbers(added));
   }
   try {
     version.version = content_hash(to_json(version));

@@ -262,11 +262,11 @@ void Connection::Client::wake() const {
 
 Result<std::unique_ptr<Connection>> Connection::open(Broker broker, Session session,
                                                      OnMessage on_message, OnState on_state) {
-  if (auto good = check(broker, session); !good) return tl::unexpected(good.error());
+  TRY(check(broker, session));
   auto client = std::make_shared<Client>(std::move(broker), std::move(session),
                                          std::move(on_message), std::move(on_state));
   // Certificates, keys and the like are wrong now, not at each attempt.
-  if (auto link = client->make_link(); !link) return tl::unexpected(link.error());
+  TRY(client->make_link());
   return std::unique_ptr<Connection>{new Connection{std::move(client)}};
 }
 

@@ -242,10 +242,9 @@ Result<std::unique_ptr<Link>> Link::make(const Broker& broker, const Session& se
                                link->name_, mosquitto_strerror(code)));
   }
   if (broker.is_tls) {
-    auto context = make_tls_context(broker);
-    if (!context) return tl::unexpected(context.error());
+    auto context = TRY(make_tls_context(broker));
     mosquitto_int_option(client, MOSQ_OPT_SSL_CTX_WITH_DEFAULTS, 0);
-    mosquitto_void_option(client, MOSQ_OPT_SSL_CTX, context->get());  // shares it
+    mosquitto_void_option(client, MOSQ_OPT_SSL_CTX, context.get());  // shares it
   }
   mosquitto_connect_v5_callback_set(client, Callbacks::connected);
   mosquitto_disconnect_v5_callback_set(client, Callbacks::disconnected);

@@ -238,8 +238,7 @@ struct Connection::Impl {
     // Or the library writes to our standard error what a server says when it ends.
     PQsetNoticeProcessor(
         handle.get(), [](void*, const char*) {}, nullptr);
-    const auto set = finished(PQexec(handle.get(), kSession));
-    if (!set) return tl::unexpected(set.error());
+    TRY(finished(PQexec(handle.get(), kSession)));
     return {};
   }
 
@@ -289,26 +288,22 @@ struct Connection::Impl {
   }
 
   [[nodiscard]] Result<void> simple(const char* statements) {
-    const auto done = finished(PQexec(handle.get(), statements));
-    if (!done) return tl::unexpected(done.error());
+    TRY(finished(PQexec(handle.get(), statements)));
     return {};
   }
 
   [[nodiscard]] Result<std::string> name_of(const std::string& statement) {
     if (const auto known = prepared.find(statement); known != prepared.end()) return known->second;
     std::string made = fmt::format("s{}", prepared.size());
-    const auto done =
-        finished(PQprepare(handle.get(), made.c_str(), statement.c_str(), 0, nullptr));
-    if (!done) return tl::unexpected(done.error());
+    TRY(finished(PQprepare(handle.get(), made.c_str(), statement.c_str(), 0, nullptr)));
     prepared.emplace(statement, made);
     return made;
   }
 
   [[nodiscard]] Result<void> commit() {
-    const auto done = finished(PQexec(handle.get(), "COMMIT"));
-    if (!done) return tl::unexpected(done.error());
+    const auto done = TRY(finished(PQexec(handle.get(), "COMMIT")));
     // A transaction in which a statement failed is rolled back, and COMMIT says so quietly.
-    if (std::string_view{PQcmdStatus(of(done->result_))} == "COMMIT") return {};
+    if (std::string_view{PQcmdStatus(of(done.result_))} == "COMMIT") return {};
     return failure(ErrorCode::malformed, name + ": the transaction was rolled back");
   }
 
@@ -369,7 +364,7 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::string& url,
                                name));
   }
   auto impl = std::make_unique<Impl>(Impl{.url = url, .password = password, .name = name});
-  if (auto connected = impl->connect(); !connected) return tl::unexpected(connected.error());
+  TRY(impl->connect());
   return std::unique_ptr<Connection>{new Connection{std::move(impl)}};
 }
 
@@ -378,11 +373,10 @@ Result<Rows> Connection::run(const std::string& statement,
   if (has_zero_byte(parameters)) {
     return failure(ErrorCode::malformed, "a text for the record has a zero byte");
   }
-  if (auto good = impl_->ready(); !good) return tl::unexpected(good.error());
-  const auto name = impl_->name_of(statement);
-  if (!name) return tl::unexpected(name.error());
+  TRY(impl_->ready());
+  const auto name = TRY(impl_->name_of(statement));
   const auto values = pointers(parameters);
-  return impl_->finished(PQexecPrepared(impl_->handle.get(), name->c_str(),
+  return impl_->finished(PQexecPrepared(impl_->handle.get(), name.c_str(),
                                         static_cast<int>(values.size()), values.data(), nullptr,
                                         nullptr, 0));
 }
@@ -434,12 +428,10 @@ Result<void> Connection::for_each(const std::string& statement,
 
 Result<bool> Connection::wait_for(const std::string& channel, milliseconds time_max,
                                   const std::stop_token& stop) {
-  if (auto good = impl_->ready(); !good) return tl::unexpected(good.error());
+  TRY(impl_->ready());
   PGconn* const connection = impl_->handle.get();
   if (!impl_->listened.contains(channel)) {
-    if (auto done = impl_->simple(fmt::format("LISTEN \"{}\"", channel).c_str()); !done) {
-      return tl::unexpected(done.error());
-    }
+    TRY(impl_->simple(fmt::format("LISTEN \"{}\"", channel).c_str()));
     impl_->listened.insert(channel);
     return true;
   }

@@ -12,9 +12,8 @@ namespace {
 
 Result<std::unique_ptr<Store>> open(const std::filesystem::path& file,
                                     sqlite::Database::Access access) {
-  auto store = sqlite::SqliteStore::open(file, {.access = access, .vfs = {}});
-  if (!store) return tl::unexpected(store.error());
-  return std::make_unique<sqlite::SqliteStore>(std::move(*store));
+  auto store = TRY(sqlite::SqliteStore::open(file, {.access = access, .vfs = {}}));
+  return std::make_unique<sqlite::SqliteStore>(std::move(store));
 }
 
 }  // namespace
@@ -24,11 +23,10 @@ Result<std::unique_ptr<Store>> open_to_read(const std::filesystem::path& file) {
 }
 
 Result<std::unique_ptr<Store>> open_untouched(const std::filesystem::path& file) {
-  auto store = sqlite::SqliteStore::open(file, {.access = sqlite::Database::Access::read_only,
-                                                .vfs = {},
-                                                .is_still = sqlite::is_still(file)});
-  if (!store) return tl::unexpected(store.error());
-  return std::make_unique<sqlite::SqliteStore>(std::move(*store));
+  auto store = TRY(sqlite::SqliteStore::open(file, {.access = sqlite::Database::Access::read_only,
+                                                    .vfs = {},
+                                                    .is_still = sqlite::is_still(file)}));
+  return std::make_unique<sqlite::SqliteStore>(std::move(store));
 }
 
 Result<std::unique_ptr<Store>> open_in_memory() {
@@ -38,10 +36,9 @@ Result<std::unique_ptr<Store>> open_in_memory() {
 Result<CheckedStore> open_checked(const std::filesystem::path& file,
                                   const std::vector<std::filesystem::path>& backups,
                                   metering::Instant now, const std::function<void()>& on_progress) {
-  auto opened = sqlite::open_checked(file, backups, now, on_progress);
-  if (!opened) return tl::unexpected(opened.error());
-  return CheckedStore{std::make_unique<sqlite::SqliteStore>(std::move(opened->store)),
-                      opened->recovery ? opened->recovery->sentence() : std::string{}};
+  auto opened = TRY(sqlite::open_checked(file, backups, now, on_progress));
+  return CheckedStore{std::make_unique<sqlite::SqliteStore>(std::move(opened.store)),
+                      opened.recovery ? opened.recovery->sentence() : std::string{}};
 }
 
 Result<StoreSummary> summary_of(const std::filesystem::path& file) {

@@ -92,21 +92,20 @@ double seconds_of(const timeval& time) {
 
 Result<ChildEnd> run_child(const ChildCommand& command, const std::function<bool()>& keep_going) {
   const Clock::time_point begin = Clock::now();
-  const auto process = SpawnPlan{command}.start(command);
-  if (!process) return tl::unexpected(process.error());
+  const auto process = TRY(SpawnPlan{command}.start(command));
   if (command.memory_max_bytes > 0) {
     const rlimit limit{command.memory_max_bytes, command.memory_max_bytes};
-    ::prlimit(*process, RLIMIT_AS, &limit, nullptr);
+    ::prlimit(process, RLIMIT_AS, &limit, nullptr);
   }
-  const EndWatch watch{*process};
+  const EndWatch watch{process};
 
   ChildEnd end;
   int status = 0;
   rusage usage{};
   for (;;) {
     const bool is_killed = end.ending != Ending::exited;
-    const pid_t ended = ::wait4(*process, &status, is_killed ? 0 : WNOHANG, &usage);
-    if (ended == *process) break;
+    const pid_t ended = ::wait4(process, &status, is_killed ? 0 : WNOHANG, &usage);
+    if (ended == process) break;
     if (ended < 0 && errno != EINTR) {
       return failure(ErrorCode::io_failed, "lost sight of '" + command.program.string() +
                                                "': " + std::generic_category().message(errno));
@@ -115,7 +114,7 @@ Result<ChildEnd> run_child(const ChildCommand& command, const std::function<bool
     const bool is_stopped = keep_going && !keep_going();
     if (is_stopped || seconds_since(begin) > command.time_max.count()) {
       end.ending = is_stopped ? Ending::stopped : Ending::over_limit;
-      ::kill(-*process, SIGKILL);
+      ::kill(-process, SIGKILL);
       continue;
     }
     watch.wait();

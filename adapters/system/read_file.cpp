@@ -12,7 +12,7 @@
 namespace recald::system {
 
 Result<std::string> read_file(const std::filesystem::path& file) {
-  if (auto is_file = require_file(file, "file"); !is_file) return tl::unexpected(is_file.error());
+  TRY(require_file(file, "file"));
   std::ifstream in{file, std::ios::binary};
   std::string bytes{std::istreambuf_iterator<char>{in}, {}};
   if (in.bad() || !in) {

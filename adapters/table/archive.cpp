@@ -17,9 +17,7 @@ struct Archive::Handle {
 };
 
 Result<Archive> Archive::open(const std::filesystem::path& file) {
-  if (auto is_file = system::require_file(file, "workbook"); !is_file) {
-    return tl::unexpected(is_file.error());
-  }
+  TRY(system::require_file(file, "workbook"));
   int code = 0;
   zip_t* zip = zip_open(file.c_str(), ZIP_RDONLY, &code);
   if (zip == nullptr) {

@@ -301,9 +301,7 @@ Result<Feed> parse_green_button(csv::ByteSource bytes) {
     if (!document.load_buffer(entry.data(), entry.size())) {
       return failure(ErrorCode::malformed, "an entry of the feed is no XML");
     }
-    if (auto added = builder.add_entry(document.document_element()); !added) {
-      return tl::unexpected(added.error());
-    }
+    TRY(builder.add_entry(document.document_element()));
   }
   if (cutter.error()) return tl::unexpected(*cutter.error());
   auto feed = builder.finish();
@@ -315,9 +313,8 @@ Result<Feed> parse_green_button(csv::ByteSource bytes) {
 }
 
 Result<Feed> read_green_button(const std::filesystem::path& file) {
-  auto bytes = csv::open_file(file, "Green Button file");
-  if (!bytes) return tl::unexpected(bytes.error());
-  auto feed = parse_green_button(std::move(*bytes));
+  auto bytes = TRY(csv::open_file(file, "Green Button file"));
+  auto feed = parse_green_button(std::move(bytes));
   if (feed) return feed;
   return failure(feed.error().code,
                  "Green Button file '" + file.string() + "': " + feed.error().message);
@@ -328,9 +325,8 @@ std::unique_ptr<RowSource> feed_rows(Feed feed) {
 }
 
 Result<std::unique_ptr<RowSource>> open_green_button(const std::filesystem::path& file) {
-  auto feed = read_green_button(file);
-  if (!feed) return tl::unexpected(feed.error());
-  return feed_rows(std::move(*feed));
+  auto feed = TRY(read_green_button(file));
+  return feed_rows(std::move(feed));
 }
 
 }  // namespace recald::table

@@ -14,9 +14,8 @@ constexpr std::uint64_t kSearchedLines = 200;
 
 /// The separator of the line with the time column, or else of the first line that is not blank.
 Result<char> separator_of(const std::filesystem::path& file, std::string_view time_column) {
-  auto bytes = csv::open_file(file, "export");
-  if (!bytes) return tl::unexpected(bytes.error());
-  csv::LineReader lines{as_utf8(std::move(*bytes))};
+  auto bytes = TRY(csv::open_file(file, "export"));
+  csv::LineReader lines{as_utf8(std::move(bytes))};
   csv::Line line{};
   std::optional<char> first;
   for (std::uint64_t i = 0; i < kSearchedLines && lines.next(line); ++i) {
@@ -36,21 +35,17 @@ Result<std::unique_ptr<RowSource>> open_rows(const std::filesystem::path& file,
   if (shape.container == Container::green_button) return open_green_button(file);
   char separator = shape.separator;
   if (separator == '\0') {
-    const auto likely = separator_of(file, shape.time_column);
-    if (!likely) return tl::unexpected(likely.error());
-    separator = *likely;
+    separator = TRY(separator_of(file, shape.time_column));
   }
-  auto bytes = csv::open_file(file, "export");
-  if (!bytes) return tl::unexpected(bytes.error());
-  return delimited_rows(std::move(*bytes), separator);
+  auto bytes = TRY(csv::open_file(file, "export"));
+  return delimited_rows(std::move(bytes), separator);
 }
 
 Result<void> read_table(const std::filesystem::path& file, const TableShape& shape,
                         std::span<const TableMeter> meters, const metering::LocalCalendar& calendar,
                         csv::ReadingIntake& intake, ClockFacts* facts) {
-  auto rows = open_rows(file, shape);
-  if (!rows) return tl::unexpected(rows.error());
-  return read_table(**rows, file.string(), shape, meters, calendar, intake, facts);
+  auto rows = TRY(open_rows(file, shape));
+  return read_table(*rows, file.string(), shape, meters, calendar, intake, facts);
 }
 
 }  // namespace recald::table

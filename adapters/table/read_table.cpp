@@ -416,9 +416,7 @@ Result<void> read_table(RowSource& rows, std::string_view name, const TableShape
   const metering::LocalCalendar* clock = &calendar;
   std::optional<metering::LocalCalendar> own;
   if (!shape.timezone.empty()) {
-    auto opened = metering::LocalCalendar::open(shape.timezone);
-    if (!opened) return tl::unexpected(opened.error());
-    own = std::move(*opened);
+    own = TRY(metering::LocalCalendar::open(shape.timezone));
     clock = &*own;
   }
   TableReader reader{rows, name, shape, meters, *clock, intake};

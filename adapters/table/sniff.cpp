@@ -81,14 +81,14 @@ class TableSniffer {
 
   Result<TableGuess> run() {
     if (rows_.empty()) return failure(ErrorCode::malformed, "it is empty");
-    if (auto found = find_times(); !found) return tl::unexpected(found.error());
-    if (auto found = find_header(); !found) return tl::unexpected(found.error());
+    TRY(find_times());
+    TRY(find_header());
     look_at_columns();
     find_clock();
-    if (auto found = find_time_format(); !found) return tl::unexpected(found.error());
+    TRY(find_time_format());
     find_meters();
-    if (auto found = find_decimal(); !found) return tl::unexpected(found.error());
-    if (auto found = list_values(); !found) return tl::unexpected(found.error());
+    TRY(find_decimal());
+    TRY(list_values());
     return std::move(guess_);
   }
 

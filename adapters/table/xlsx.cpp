@@ -36,16 +36,14 @@ void add_text(const pugi::xml_node& node, std::string& text) {
 }
 
 Result<std::string> whole_part(const Archive& archive, const std::string& entry) {
-  const auto bytes = archive.bytes_of(entry);
-  if (!bytes) return tl::unexpected(bytes.error());
+  const auto bytes = TRY(archive.bytes_of(entry));
   std::string part;
   for (;;) {
     const std::size_t had = part.size();
     part.resize(had + 64 * 1024);
-    const auto got = (*bytes)(part.data() + had, part.size() - had);
-    if (!got) return tl::unexpected(got.error());
-    part.resize(had + *got);
-    if (*got == 0) return part;
+    const auto got = TRY(bytes(part.data() + had, part.size() - had));
+    part.resize(had + got);
+    if (got == 0) return part;
     if (part.size() > kPartMax) {
       return failure(ErrorCode::malformed, "'" + entry + "' of the workbook is too large");
     }
@@ -54,9 +52,8 @@ Result<std::string> whole_part(const Archive& archive, const std::string& entry)
 
 Result<void> parse_part(const Archive& archive, const std::string& entry,
                         pugi::xml_document& document) {
-  const auto part = whole_part(archive, entry);
-  if (!part) return tl::unexpected(part.error());
-  if (!document.load_buffer(part->data(), part->size())) {
+  const auto part = TRY(whole_part(archive, entry));
+  if (!document.load_buffer(part.data(), part.size())) {
     return failure(ErrorCode::malformed, "'" + entry + "' of the workbook is no XML");
   }
   return {};
@@ -80,12 +77,8 @@ std::string entry_of(std::string_view target) {
 Result<Workbook> read_workbook(const Archive& archive) {
   pugi::xml_document document;
   pugi::xml_document relations;
-  if (auto read = parse_part(archive, "xl/workbook.xml", document); !read) {
-    return tl::unexpected(read.error());
-  }
-  if (auto read = parse_part(archive, "xl/_rels/workbook.xml.rels", relations); !read) {
-    return tl::unexpected(read.error());
-  }
+  TRY(parse_part(archive, "xl/workbook.xml", document));
+  TRY(parse_part(archive, "xl/_rels/workbook.xml.rels", relations));
   Workbook book;
   const pugi::xml_node root = document.document_element();
   const std::string_view epoch = attribute(child_named(root, "workbookPr"), "date1904");
@@ -141,9 +134,7 @@ Result<std::vector<Kind>> read_styles(const Archive& archive) {
   std::vector<Kind> kinds;
   if (!archive.has("xl/styles.xml")) return kinds;
   pugi::xml_document document;
-  if (auto read = parse_part(archive, "xl/styles.xml", document); !read) {
-    return tl::unexpected(read.error());
-  }
+  TRY(parse_part(archive, "xl/styles.xml", document));
   const pugi::xml_node root = document.document_element();
   for (const pugi::xml_node& style : child_named(root, "cellXfs").children()) {
     const int id = static_cast<int>(whole_number(attribute(style, "numFmtId")).value_or(0));
@@ -160,9 +151,8 @@ Result<std::vector<Kind>> read_styles(const Archive& archive) {
 Result<std::vector<std::string>> read_shared(const Archive& archive) {
   std::vector<std::string> texts;
   if (!archive.has("xl/sharedStrings.xml")) return texts;
-  auto bytes = archive.bytes_of("xl/sharedStrings.xml");
-  if (!bytes) return tl::unexpected(bytes.error());
-  ElementCutter cutter{std::move(*bytes), {"si"}, kRowMax};
+  auto bytes = TRY(archive.bytes_of("xl/sharedStrings.xml"));
+  ElementCutter cutter{std::move(bytes), {"si"}, kRowMax};
   std::size_t size = 0;
   for (std::string_view element; cutter.next(element);) {
     pugi::xml_document document;
@@ -307,9 +297,8 @@ tl::unexpected<Error> in_file(const std::filesystem::path& file, const Error& er
 }  // namespace
 
 Result<std::vector<std::string>> sheet_names(const std::filesystem::path& file) {
-  const auto archive = Archive::open(file);
-  if (!archive) return tl::unexpected(archive.error());
-  const auto book = read_workbook(*archive);
+  const auto archive = TRY(Archive::open(file));
+  const auto book = read_workbook(archive);
   if (!book) return in_file(file, book.error());
   std::vector<std::string> names;
   for (const Sheet& sheet : book->sheets) names.push_back(sheet.name);
@@ -318,9 +307,8 @@ Result<std::vector<std::string>> sheet_names(const std::filesystem::path& file) 
 
 Result<std::unique_ptr<RowSource>> open_sheet(const std::filesystem::path& file,
                                               const std::string& sheet) {
-  const auto archive = Archive::open(file);
-  if (!archive) return tl::unexpected(archive.error());
-  const auto book = read_workbook(*archive);
+  const auto archive = TRY(Archive::open(file));
+  const auto book = read_workbook(archive);
   if (!book) return in_file(file, book.error());
   const auto found = std::find_if(book->sheets.begin(), book->sheets.end(), [&](const Sheet& one) {
     return sheet.empty() || one.name == sheet;
@@ -332,11 +320,11 @@ Result<std::unique_ptr<RowSource>> open_sheet(const std::filesystem::path& file,
                    "workbook '" + file.string() + "' has no sheet " + csv::in_quotes(sheet) +
                        (names.empty() ? "; it has none" : "; it has " + names));
   }
-  auto styles = read_styles(*archive);
+  auto styles = read_styles(archive);
   if (!styles) return in_file(file, styles.error());
-  auto shared = read_shared(*archive);
+  auto shared = read_shared(archive);
   if (!shared) return in_file(file, shared.error());
-  auto bytes = archive->bytes_of(found->entry);
+  auto bytes = archive.bytes_of(found->entry);
   if (!bytes) return in_file(file, bytes.error());
   return std::make_unique<SheetRows>(std::move(*bytes), book->counts_from_1904, std::move(*styles),
                                      std::move(*shared));
