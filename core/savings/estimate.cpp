@@ -14,12 +14,12 @@ Estimate estimate_of(const Eigen::VectorXd& draws) {
           .q05 = quantile_of_sorted(sorted, 0.05),
           .q50 = quantile_of_sorted(sorted, 0.5),
           .q95 = quantile_of_sorted(sorted, 0.95),
-          .above_zero = (draws.array() > 0.0).cast<double>().mean()};
+          .probability_of_saving = (draws.array() > 0.0).cast<double>().mean()};
 }
 
 Estimate scaled(const Estimate& estimate, double factor) {
   return {factor * estimate.mean, factor * estimate.q05, factor * estimate.q50,
-          factor * estimate.q95, estimate.above_zero};
+          factor * estimate.q95, estimate.probability_of_saving};
 }
 
 Estimate normal_estimate(double mean, double sd) {
@@ -28,7 +28,7 @@ Estimate normal_estimate(double mean, double sd) {
           .q05 = boost::math::quantile(normal, 0.05),
           .q50 = mean,
           .q95 = boost::math::quantile(normal, 0.95),
-          .above_zero = boost::math::cdf(boost::math::complement(normal, 0.0))};
+          .probability_of_saving = boost::math::cdf(boost::math::complement(normal, 0.0))};
 }
 
 Payback simple_payback(double cost, const Estimate& money_a_year) {

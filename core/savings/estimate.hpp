@@ -13,7 +13,7 @@ struct Estimate {
   double q05;
   double q50;
   double q95;
-  double above_zero;  ///< Probability that it is more than nothing.
+  double probability_of_saving;  ///< Probability that it is more than nothing.
 };
 
 /// @param draws  At least one, finite.

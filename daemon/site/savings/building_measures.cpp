@@ -222,11 +222,10 @@ class BuildingMeasures final : public MeasuredModel {
     SiteModelParts parts = result_.with->parts;
     parts.definitions = columns_.definitions;
     const auto months = std::ssize(result_.with->problem.month_names);
-    const auto make = model_of(
+    const auto make = TRY(model_of(
         site, parts, {result_.months.begin(), result_.months.begin() + months},
-        {modelled.site.calendar, site.holidays, *site.location, modelled.weather.filled.series});
-    if (!make) return tl::unexpected(make.error());
-    model_ = (*make)(*site.building);
+        {modelled.site.calendar, site.holidays, *site.location, modelled.weather.filled.series}));
+    model_ = make(*site.building);
     return {};
   }
 
@@ -274,7 +273,7 @@ Result<std::unique_ptr<MeasuredModel>> make_building_measures(const FinishedCali
                                                               const std::vector<Measure>& measures,
                                                               const ForEachIndex& executor) {
   auto model = std::make_unique<BuildingMeasures>(finished, measures, executor);
-  if (auto made = model->make_model(finished.modelled); !made) return tl::unexpected(made.error());
+  TRY(model->make_model(finished.modelled));
   return model;
 }
 

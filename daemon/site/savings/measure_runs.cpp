@@ -56,9 +56,8 @@ class EngineWithMeasures final : public Engine {
 Result<RunMonths> months_of_runs(const doe::DesignFolder& design) {
   RunMonths runs;
   for (const doe::DesignMonth& name : design.months) {
-    const auto month = metering::parse_month(name.text());
-    if (!month) return tl::unexpected(month.error());
-    const int year = static_cast<int>(month->year());
+    const auto month = TRY(metering::parse_month(name.text()));
+    const int year = static_cast<int>(month.year());
     const auto file = design.folder / kWeatherYears / fmt::format("{}.epw", year);
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) {
@@ -67,7 +66,7 @@ Result<RunMonths> months_of_runs(const doe::DesignFolder& design) {
                                  "another 'design' folder, and make the runs again",
                                  file.string()));
     }
-    runs.months.push_back(*month);
+    runs.months.push_back(month);
     runs.weather[year] = file;
   }
   return runs;
@@ -106,10 +105,9 @@ Result<void> require_same_runs(const ModelledSite& modelled, const RunMonths& mo
                                const std::filesystem::path& design,
                                const std::function<bool()>& keep_going,
                                std::vector<std::string>& notes) {
-  const auto plain = make_energyplus_engine(modelled.site, *modelled.site.config.model, months, {},
-                                            keep_going, notes);
-  if (!plain) return tl::unexpected(plain.error());
-  if (doe::fingerprint_of(design) == (*plain)->fingerprint()) return {};
+  const auto plain = TRY(make_energyplus_engine(modelled.site, *modelled.site.config.model, months,
+                                                {}, keep_going, notes));
+  if (doe::fingerprint_of(design) == plain->fingerprint()) return {};
   return failure(
       ErrorCode::invalid_value,
       fmt::format("the runs in '{}' were made with another version of EnergyPlus, another interval "
@@ -153,29 +151,21 @@ bool has_measure_runs(const ModelConfig& model, std::span<const Measure> measure
 Result<MadeRuns> make_measure_runs(const ModelledSite& modelled, std::span<const Measure> measures,
                                    const ForEachIndex& executor, const Engine::Observer& observer) {
   const ModelConfig& model = *modelled.site.config.model;
-  auto lock = lock_runs(model.energyplus->design);
-  if (!lock) return tl::unexpected(lock.error());
-  const auto design = doe::read_design_folder(model.energyplus->design);
-  if (!design) return tl::unexpected(design.error());
-  const auto months = months_of_runs(*design);
-  if (!months) return tl::unexpected(months.error());
+  const auto lock = TRY(lock_runs(model.energyplus->design));
+  const auto design = TRY(doe::read_design_folder(model.energyplus->design));
+  const auto months = TRY(months_of_runs(design));
   const auto keep_going = [&] { return !observer || observer(0, 0); };
   std::vector<std::string> notes;
-  if (auto same = require_same_runs(modelled, *months, design->folder, keep_going, notes); !same) {
-    return tl::unexpected(same.error());
-  }
+  TRY(require_same_runs(modelled, months, design.folder, keep_going, notes));
   const MeasureColumns columns{model, measures};
-  auto engine =
-      make_energyplus_engine(modelled.site, model, *months, columns.beside(), keep_going, notes);
-  if (!engine) return tl::unexpected(engine.error());
-  EngineWithMeasures with_measures{**engine, columns};
+  auto engine = TRY(
+      make_energyplus_engine(modelled.site, model, months, columns.beside(), keep_going, notes));
+  EngineWithMeasures with_measures{*engine, columns};
   const std::filesystem::path folder = measure_folder(model, measures);
-  const doe::DesignPlan plan = plan_of(*design, columns, (*engine)->fingerprint());
-  auto made = make_planned_runs(folder, plan, with_measures, **engine, true, executor, observer);
+  const doe::DesignPlan plan = plan_of(design, columns, engine->fingerprint());
+  auto made = make_planned_runs(folder, plan, with_measures, *engine, true, executor, observer);
   if (!made) return made;
-  if (auto copied = copy_weather(design->folder, folder); !copied) {
-    return tl::unexpected(copied.error());
-  }
+  TRY(copy_weather(design.folder, folder));
   return made;
 }
 

@@ -36,12 +36,13 @@ AvoidedEnergy avoided_of(const assessment::UnseenMean& mean, double days,
                                          .q05 = expected.q05 - mean.measured,
                                          .q50 = expected.q50 - mean.measured,
                                          .q95 = expected.q95 - mean.measured,
-                                         .above_zero = 0.0},
+                                         .probability_of_saving = 0.0},
                                         days);
   // A meter that never runs backwards may be forecast as nothing, for certain.
   const double avoided_daily = expected.mean - mean.measured;
-  avoided.avoided_kWh.above_zero = sd > 0.0 ? savings::normal_estimate(avoided_daily, sd).above_zero
-                                            : (avoided_daily > 0.0 ? 1.0 : 0.0);
+  avoided.avoided_kWh.probability_of_saving =
+      sd > 0.0 ? savings::normal_estimate(avoided_daily, sd).probability_of_saving
+               : (avoided_daily > 0.0 ? 1.0 : 0.0);
   if (rates.per_kWh) avoided.money = savings::scaled(avoided.avoided_kWh, *rates.per_kWh);
   if (rates.emissions_kg_per_kWh) {
     avoided.emissions_kg = savings::scaled(avoided.avoided_kWh, *rates.emissions_kg_per_kWh);

@@ -43,13 +43,11 @@ struct PairedRuns {
 };
 
 Result<PairedRuns> pair_runs(const ModelConfig& model, std::span<const Measure> measures) {
-  auto without = doe::read_design_folder(model.energyplus->design);
-  if (!without) return tl::unexpected(without.error());
-  auto with = doe::read_design_folder(measure_folder(model, measures));
-  if (!with) return tl::unexpected(with.error());
-  set_aside_outliers(*without);
-  set_aside_outliers(*with);
-  PairedRuns pairs{std::move(*without), std::move(*with), {}, {}};
+  auto without = TRY(doe::read_design_folder(model.energyplus->design));
+  auto with = TRY(doe::read_design_folder(measure_folder(model, measures)));
+  set_aside_outliers(without);
+  set_aside_outliers(with);
+  PairedRuns pairs{std::move(without), std::move(with), {}, {}};
   const Index q = pairs.without.theta.cols();
   for (Index i = 0; i < pairs.with.theta.rows(); ++i) {
     for (Index j = 0; j < pairs.without.theta.rows(); ++j) {
@@ -91,10 +89,9 @@ doe::DesignFolder as_one(const PairedRuns& pairs) {
 Result<doe::DesignDays> days_as_one(const PairedRuns& pairs) {
   auto without = doe::read_design_days(pairs.without);
   if (!without) return without;
-  const auto with = doe::read_design_days(pairs.with);
-  if (!with) return tl::unexpected(with.error());
+  const auto with = TRY(doe::read_design_days(pairs.with));
   without->values = stacked(without->values(pairs.rows_without, Eigen::all),
-                            with->values(pairs.rows_with, Eigen::all));
+                            with.values(pairs.rows_with, Eigen::all));
   return without;
 }
 
@@ -131,13 +128,11 @@ class RunsMeasures final : public MeasuredModel {
 
   /// Call it once, before anything else.
   Result<void> fit(const ModelledSite& modelled) {
-    auto plain = model::metamodel::model_of(*result_.design->fitted.monthly_form, months_);
-    if (!plain) return tl::unexpected(plain.error());
-    plain_ = plain->clone();
+    auto plain = TRY(model::metamodel::model_of(*result_.design->fitted.monthly_form, months_));
+    plain_ = plain.clone();
     for (const std::span<const Measure> some : alone_and_together(measures_)) {
-      auto difference = fit_difference(modelled, some);
-      if (!difference) return tl::unexpected(difference.error());
-      differences_.push_back(std::move(*difference));
+      auto difference = TRY(fit_difference(modelled, some));
+      differences_.push_back(std::move(difference));
     }
     return {};
   }
@@ -188,13 +183,13 @@ class RunsMeasures final : public MeasuredModel {
         if (!measures_[m].changes[c].by.is_certain()) columns.col(next++) = achieved[m][c];
       }
     }
-    const auto saved = design::run_model(*difference.model, difference.columns, columns, executor_);
-    if (!saved) return tl::unexpected(saved.error());
+    const auto saved =
+        TRY(design::run_model(*difference.model, difference.columns, columns, executor_));
     MatrixXd after = before;
     const auto months = std::ssize(months_);
     for (std::size_t k = 0; k < difference.outputs.size(); ++k) {
       auto of_output = after.middleCols(difference.outputs[k] * months, months);
-      of_output -= saved->middleCols(static_cast<Index>(k) * months, months);
+      of_output -= saved.middleCols(static_cast<Index>(k) * months, months);
       for (Index d = 0; d < after.rows(); ++d) {
         of_output.row(d).array() += difference.error_sd[k] * rng.normal();
       }
@@ -245,25 +240,21 @@ class RunsMeasures final : public MeasuredModel {
 
   [[nodiscard]] Result<Difference> fit_difference(const ModelledSite& modelled,
                                                   std::span<const Measure> measures) const {
-    const auto pairs = pair_runs(*modelled.site.config.model, measures);
-    if (!pairs) return tl::unexpected(pairs.error());
-    const auto both =
-        data_in_site_months(modelled, result_, as_one(*pairs),
-                            [&](const doe::DesignFolder& /*both*/) { return days_as_one(*pairs); });
-    if (!both) return tl::unexpected(both.error());
-    regression::DesignData data = *both;
-    const Index runs = both->runs() / 2;
-    data.theta = both->theta.topRows(runs);
-    data.values = both->values.topRows(runs) - both->values.bottomRows(runs);
-    Difference difference{.columns = pairs->with.parameters, .model = nullptr};
-    difference.outputs = keep_moved(*both, data);
+    const auto pairs = TRY(pair_runs(*modelled.site.config.model, measures));
+    const auto both = TRY(
+        data_in_site_months(modelled, result_, as_one(pairs),
+                            [&](const doe::DesignFolder& /*both*/) { return days_as_one(pairs); }));
+    regression::DesignData data = both;
+    const Index runs = both.runs() / 2;
+    data.theta = both.theta.topRows(runs);
+    data.values = both.values.topRows(runs) - both.values.bottomRows(runs);
+    Difference difference{.columns = pairs.with.parameters, .model = nullptr};
+    difference.outputs = keep_moved(both, data);
     if (difference.outputs.empty()) return difference;
-    const auto form = regression::fit_monthly_form(data);
-    if (!form) return tl::unexpected(form.error());
-    auto model = model::metamodel::model_of(*form, months_);
-    if (!model) return tl::unexpected(model.error());
-    difference.model = model->clone();
-    for (const auto& output : form->quality.outputs) difference.error_sd.push_back(output.sigma_r);
+    const auto form = TRY(regression::fit_monthly_form(data));
+    auto model = TRY(model::metamodel::model_of(form, months_));
+    difference.model = model.clone();
+    for (const auto& output : form.quality.outputs) difference.error_sd.push_back(output.sigma_r);
     return difference;
   }
 
@@ -283,7 +274,7 @@ Result<std::unique_ptr<MeasuredModel>> make_runs_measures(const FinishedCalibrat
                                                           const std::vector<Measure>& measures,
                                                           const ForEachIndex& executor) {
   auto model = std::make_unique<RunsMeasures>(finished, measures, executor);
-  if (auto fitted = model->fit(finished.modelled); !fitted) return tl::unexpected(fitted.error());
+  TRY(model->fit(finished.modelled));
   return model;
 }
 

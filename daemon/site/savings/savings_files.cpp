@@ -8,10 +8,15 @@
 
 #include "adapters/report/savings_page.hpp"
 #include "adapters/results/job_result_json.hpp"
+#include "adapters/shapes/assessment_shapes.hpp"
+#include "adapters/shapes/shape_json.hpp"
 #include "adapters/system/write_file.hpp"
 #include "core/display/warning.hpp"
 #include "daemon/site/results/provenance_json.hpp"
 #include "daemon/site/savings/savings_words.hpp"
+
+SHAPE(recald::savings::Estimate, mean, q05, q50, q95, probability_of_saving);
+SHAPE(recald::daemon::AvoidedEnergy, expected_kWh, avoided_kWh, money, emissions_kg);
 
 namespace recald::daemon {
 namespace {
@@ -19,66 +24,33 @@ namespace {
 // Keys in the order they are written: files are read by people too.
 using Json = nlohmann::ordered_json;
 
-Json estimate_json(const savings::Estimate& estimate) {
-  return {{"mean", results::number(estimate.mean)},
-          {"q05", results::number(estimate.q05)},
-          {"q50", results::number(estimate.q50)},
-          {"q95", results::number(estimate.q95)},
-          {"probability_of_saving", results::number(estimate.above_zero)}};
-}
-
-Json estimate_json(const std::optional<savings::Estimate>& estimate) {
-  return estimate ? estimate_json(*estimate) : Json(nullptr);
-}
-
-template <class Number>
-Json optional_json(const std::optional<Number>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 Json meter_json(const MeterSaving& meter) {
   return {{"output", meter.output},
           {"meter", meter.meter},
           {"unit", meter.is_peak ? "kW" : "kWh"},
           {"baseline", results::number(meter.baseline)},
-          {"saved", estimate_json(meter.saved)},
+          {"saved", shapes::json_of(meter.saved)},
           {"share", results::number(meter.saved.q50 / meter.baseline)},
-          {"money", estimate_json(meter.money)},
-          {"emissions_kg", estimate_json(meter.emissions_kg)}};
+          {"money", shapes::json_of(meter.money)},
+          {"emissions_kg", shapes::json_of(meter.emissions_kg)}};
 }
 
 Json measure_json(const MeasureSaving& saving) {
   Json meters = Json::array();
   for (const MeterSaving& meter : saving.meters) meters.push_back(meter_json(meter));
   Json json = {{"name", saving.name},
-               {"cost", optional_json(saving.cost)},
+               {"cost", shapes::json_of(saving.cost)},
                {"meters", meters},
-               {"money", estimate_json(saving.money)},
-               {"emissions_kg", estimate_json(saving.emissions_kg)},
+               {"money", shapes::json_of(saving.money)},
+               {"emissions_kg", shapes::json_of(saving.emissions_kg)},
                {"payback_years", nullptr},
                {"notes", saving.notes}};
   if (const auto& payback = saving.payback) {
-    json["payback_years"] = {{"q05", optional_json(payback->q05_years)},
-                             {"q50", optional_json(payback->q50_years)},
-                             {"q95", optional_json(payback->q95_years)}};
+    json["payback_years"] = {{"q05", shapes::json_of(payback->q05_years)},
+                             {"q50", shapes::json_of(payback->q50_years)},
+                             {"q95", shapes::json_of(payback->q95_years)}};
   }
   return json;
-}
-
-Json way_json(const std::optional<AvoidedEnergy>& way) {
-  if (!way) return nullptr;
-  return {{"expected_kWh", results::number(way->expected_kWh)},
-          {"avoided_kWh", estimate_json(way->avoided_kWh)},
-          {"money", estimate_json(way->money)},
-          {"emissions_kg", estimate_json(way->emissions_kg)}};
-}
-
-Json forecast_json(const std::optional<assessment::MonthForecast>& forecast) {
-  if (!forecast) return nullptr;
-  return {{"mean", results::number(forecast->mean)},
-          {"q05", results::number(forecast->q05)},
-          {"q50", results::number(forecast->q50)},
-          {"q95", results::number(forecast->q95)}};
 }
 
 Json since_json(const MeterSince& meter) {
@@ -86,15 +58,15 @@ Json since_json(const MeterSince& meter) {
   for (const MonthSince& month : meter.since) {
     months.push_back({{"month", metering::to_string(month.month)},
                       {"measured", results::number(month.measured)},
-                      {"option_c", forecast_json(month.regression)},
-                      {"option_d", forecast_json(month.model)}});
+                      {"option_c", shapes::json_of(month.regression)},
+                      {"option_d", shapes::json_of(month.model)}});
   }
   return {{"output", meter.output},
           {"meter", meter.meter},
           {"months", meter.months},
           {"measured_kWh", results::number(meter.measured_kWh)},
-          {"option_c", way_json(meter.regression)},
-          {"option_d", way_json(meter.model)},
+          {"option_c", shapes::json_of(meter.regression)},
+          {"option_d", shapes::json_of(meter.model)},
           {"agreement", agreement_words(meter, {"kWh"})},
           {"by_month_kWh_day", months}};
 }
@@ -118,9 +90,10 @@ std::string savings_csv(const SiteSavings& savings) {
   std::string csv = "measure,output,unit,baseline,saved_q05,saved_q50,saved_q95,probability\n";
   for (const MeasureSaving& saving : savings.measures) {
     for (const MeterSaving& meter : saving.meters) {
-      csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.4f}\n", quoted(saving.name),
-                         meter.output, meter.is_peak ? "kW" : "kWh", meter.baseline,
-                         meter.saved.q05, meter.saved.q50, meter.saved.q95, meter.saved.above_zero);
+      csv +=
+          fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.4f}\n", quoted(saving.name),
+                      meter.output, meter.is_peak ? "kW" : "kWh", meter.baseline, meter.saved.q05,
+                      meter.saved.q50, meter.saved.q95, meter.saved.probability_of_saving);
     }
   }
   return csv;

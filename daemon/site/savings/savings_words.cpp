@@ -30,7 +30,7 @@ SavedAmount amount_of(std::string what, std::string unit, const Estimate& estima
           .q50 = factor * estimate.q50,
           .q95 = factor * estimate.q95,
           .share = {},
-          .probability = estimate.above_zero};
+          .probability = estimate.probability_of_saving};
 }
 
 void add_money(const std::optional<Estimate>& money, const std::optional<Estimate>& emissions_kg,

@@ -175,9 +175,8 @@ Result<void> add_savings(const MeasuredModel& model, const Asked& asked,
                          const Eigen::MatrixXd& buildings, const std::vector<Measure>& measures,
                          const AchievedDraws& achieved, Rng& rng, SiteSavings& savings) {
   for (std::size_t m = 0; m < measures.size(); ++m) {
-    const auto after = model.run_with(buildings, asked.before, achieved, m, rng);
-    if (!after) return tl::unexpected(after.error());
-    MeasureSaving saving = saving_of(asked, measures[m].name, *after);
+    const auto after = TRY(model.run_with(buildings, asked.before, achieved, m, rng));
+    MeasureSaving saving = saving_of(asked, measures[m].name, after);
     take_cost(measures[m].cost, savings.is_year, saving);
     for (std::string& sentence : model.unknowns(measures[m])) {
       saving.notes.push_back(std::move(sentence));
@@ -185,9 +184,8 @@ Result<void> add_savings(const MeasuredModel& model, const Asked& asked,
     savings.measures.push_back(std::move(saving));
   }
   if (measures.size() < 2) return {};
-  const auto after = model.run_with(buildings, asked.before, achieved, {}, rng);
-  if (!after) return tl::unexpected(after.error());
-  savings.measures.push_back(saving_of(asked, kAllTogether, *after));
+  const auto after = TRY(model.run_with(buildings, asked.before, achieved, {}, rng));
+  savings.measures.push_back(saving_of(asked, kAllTogether, after));
   take_cost(cost_of_all(measures), savings.is_year, savings.measures.back());
   return {};
 }
@@ -199,9 +197,9 @@ Result<SiteSavings> savings_of(const FinishedCalibration& finished,
                                const calibration::RunContext& context) {
   const SiteCalibration& result = finished.calibration;
   if (!result.with) return failure(ErrorCode::not_enough_data, result.not_calibrated_because);
-  const auto model = result.design ? make_runs_measures(finished, measures, context.executor)
-                                   : make_building_measures(finished, measures, context.executor);
-  if (!model) return tl::unexpected(model.error());
+  const auto model =
+      TRY(result.design ? make_runs_measures(finished, measures, context.executor)
+                        : make_building_measures(finished, measures, context.executor));
   const std::vector<std::string>& months = result.with->problem.month_names;
   const std::vector<metering::Month> calibrated{result.months.begin(),
                                                 result.months.begin() + std::ssize(months)};
@@ -216,25 +214,21 @@ Result<SiteSavings> savings_of(const FinishedCalibration& finished,
   Rng rng_of_measures{context.seed, streams::kSavings[1]};
   Rng rng_of_responses{context.seed, streams::kSavings[2]};
   // The measured months tell what the draws are off by, each at itself.
-  Eigen::MatrixXd buildings = (*model)->buildings(draws.theta, rng_of_measures);
-  const auto simulated = (*model)->run(buildings);
-  if (!simulated) return tl::unexpected(simulated.error());
+  Eigen::MatrixXd buildings = model->buildings(draws.theta, rng_of_measures);
+  const auto simulated = TRY(model->run(buildings));
   const auto errors =
-      savings::draw_errors(result.with->problem, result.with->errors, result.calibration, draws,
-                           *simulated, (*model)->limits(), rng_of_errors);
-  if (!errors) return tl::unexpected(errors.error());
-  const Index q = (*model)->calibrated();
-  buildings.leftCols(q) = errors->theta.leftCols(q);
+      TRY(savings::draw_errors(result.with->problem, result.with->errors, result.calibration, draws,
+                               simulated, model->limits(), rng_of_errors));
+  const Index q = model->calibrated();
+  buildings.leftCols(q) = errors.theta.leftCols(q);
 
   std::vector<assessment::Service> services;
   for (const auto& output : result.outputs)
     services.push_back(assessment::service_of(output.utility));
-  asked.factors = errors->level.cwiseProduct(savings::draw_responses(
+  asked.factors = errors.level.cwiseProduct(savings::draw_responses(
       buildings.rows(), services, savings::response_errors(result.model), rng_of_responses));
   asked.missed = savings::draw_missed(buildings.rows(), std::ssize(services), rng_of_responses);
-  auto before = (*model)->run(buildings);
-  if (!before) return tl::unexpected(before.error());
-  asked.before = std::move(*before);
+  asked.before = TRY(model->run(buildings));
 
   SiteSavings savings{.is_year = asked.year.is_year,
                       .months = months,
@@ -242,11 +236,7 @@ Result<SiteSavings> savings_of(const FinishedCalibration& finished,
                       .measures = {},
                       .notes = notes_of_all(result, asked.year.is_year)};
   const AchievedDraws achieved = draw_achieved(measures, buildings.rows(), rng_of_measures);
-  if (auto added =
-          add_savings(**model, asked, buildings, measures, achieved, rng_of_measures, savings);
-      !added) {
-    return tl::unexpected(added.error());
-  }
+  TRY(add_savings(*model, asked, buildings, measures, achieved, rng_of_measures, savings));
   return savings;
 }
 

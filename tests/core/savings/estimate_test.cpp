@@ -12,14 +12,14 @@ TEST(Estimate, IsQuantilesAndTheShareThatSaves) {
   EXPECT_DOUBLE_EQ(estimate.q05, -15.0);
   EXPECT_DOUBLE_EQ(estimate.q50, 30.0);
   EXPECT_DOUBLE_EQ(estimate.q95, 75.0);
-  EXPECT_DOUBLE_EQ(estimate.above_zero, 80.0 / 101.0);  // zero is no saving
+  EXPECT_DOUBLE_EQ(estimate.probability_of_saving, 80.0 / 101.0);  // zero is no saving
 }
 
 TEST(Estimate, OfANormalHasItsQuantiles) {
   const Estimate estimate = normal_estimate(10.0, 4.0);
   EXPECT_NEAR(estimate.q05, 10.0 - 1.644854 * 4.0, 1e-5);
   EXPECT_NEAR(estimate.q95, 10.0 + 1.644854 * 4.0, 1e-5);
-  EXPECT_NEAR(estimate.above_zero, 0.993790, 1e-6);  // Phi(2.5)
+  EXPECT_NEAR(estimate.probability_of_saving, 0.993790, 1e-6);  // Phi(2.5)
 }
 
 // What saves most pays back soonest, and what may save nothing may never.
