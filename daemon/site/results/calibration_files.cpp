@@ -8,48 +8,29 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/results/job_result_json.hpp"
+#include "adapters/shapes/assessment_shapes.hpp"
+#include "adapters/shapes/shape_json.hpp"
 #include "core/absent.hpp"
 #include "core/display/warning.hpp"
 #include "core/regression/fit_quality.hpp"
 #include "daemon/site/results/provenance_json.hpp"
+
+SHAPE(recald::calibration::Summary, name, unit, mean, sd, q05, q50, q95, contraction, rhat,
+      ess_bulk, ess_tail, mcse);
+SHAPE(recald::calibration::BridgeEstimate, log_evidence, mcse);
 
 namespace recald::daemon {
 namespace {
 
 // Keys in the order they are written: files are read by people too.
 using Json = nlohmann::ordered_json;
-using assessment::MonthRole;
+
+constexpr assessment::MonthForecast kNoForecast{kAbsent, kAbsent, kAbsent,
+                                                kAbsent, kAbsent, kAbsent};
 
 constexpr const char* kMonthsHeader =
     "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,"
     "revision,tzdata\n";
-
-const char* role_word(MonthRole role) {
-  switch (role) {
-    case MonthRole::calibration:
-      return "calibration";
-    case MonthRole::validation:
-      return "validation";
-    case MonthRole::unused:
-      return "unused";
-  }
-  return "unused";
-}
-
-Json summary_json(const calibration::Summary& s) {
-  return {{"name", s.name},
-          {"unit", s.unit},
-          {"mean", results::number(s.mean)},
-          {"sd", results::number(s.sd)},
-          {"q05", results::number(s.q05)},
-          {"q50", results::number(s.q50)},
-          {"q95", results::number(s.q95)},
-          {"contraction", results::number(s.contraction)},
-          {"rhat", results::number(s.rhat)},
-          {"ess_bulk", results::number(s.ess_bulk)},
-          {"ess_tail", results::number(s.ess_tail)},
-          {"mcse", results::number(s.mcse)}};
-}
 
 /// Ends that a prior does not have are null.
 Json prior_json(const Prior& prior) {
@@ -64,7 +45,7 @@ Json prior_json(const Prior& prior) {
 Json parameters_json(const assessment::AssessedCalibration& result) {
   Json list = Json::array();
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
-    Json entry = summary_json(result.calibration.parameters[j]);
+    Json entry = shapes::json_of(result.calibration.parameters[j]);
     entry["contraction_max"] = results::number(assessment::contraction_max(result, j));
     entry["identified"] = assessment::is_identified(result, j);
     entry["prior"] = prior_json(result.parameters[j].prior);
@@ -183,11 +164,9 @@ Json forecast_fit_json(const assessment::ForecastFit& fit,
 Json unseen_mean_json(const assessment::ForecastAssessment& forecast) {
   if (!forecast.unseen_mean) return nullptr;
   const auto& [measured, month] = *forecast.unseen_mean;
-  return {{"measured", results::number(measured)},
-          {"mean", results::number(month.mean)},
-          {"q05", results::number(month.q05)},
-          {"q50", results::number(month.q50)},
-          {"q95", results::number(month.q95)}};
+  Json json = {{"measured", results::number(measured)}};
+  json.update(shapes::json_of(month));
+  return json;
 }
 
 /// @param of  The output's forecast or yardstick; null: it has none.
@@ -218,18 +197,13 @@ Json predictions_json(const assessment::AssessedCalibration& result) {
   for (const assessment::OutputCalibration& output : result.outputs) {
     for (std::size_t i = 0; i < result.month_names.size(); ++i) {
       const auto& month = output.assessment.forecast.months[i];
-      const auto number = [&](double assessment::MonthForecast::*value) {
-        return results::number(month ? (*month).*value : kAbsent);
-      };
-      list.push_back({{"output", output.name},
-                      {"month", result.month_names[i]},
-                      {"role", role_word(result.roles[i])},
-                      {"measured", results::number(output.measured[i])},
-                      {"simulated", results::number(output.assessment.simulated[i])},
-                      {"mean", number(&assessment::MonthForecast::mean)},
-                      {"q05", number(&assessment::MonthForecast::q05)},
-                      {"q50", number(&assessment::MonthForecast::q50)},
-                      {"q95", number(&assessment::MonthForecast::q95)}});
+      Json entry = {{"output", output.name},
+                    {"month", result.month_names[i]},
+                    {"role", name_of(result.roles[i])},
+                    {"measured", results::number(output.measured[i])},
+                    {"simulated", results::number(output.assessment.simulated[i])}};
+      entry.update(shapes::json_of(month.value_or(kNoForecast)));
+      list.push_back(std::move(entry));
     }
   }
   return list;
@@ -262,7 +236,7 @@ Json outputs_json(const assessment::AssessedCalibration& result) {
     for (std::size_t i = 0; i < result.month_names.size(); ++i) {
       const assessment::BoxPlot& box = output.assessment.boxes[i];
       months.push_back({{"month", result.month_names[i]},
-                        {"role", role_word(result.roles[i])},
+                        {"role", name_of(result.roles[i])},
                         {with_unit("measured", output), results::number(output.measured[i])},
                         {"draws_q25", results::number(box.q25)},
                         {"draws_q50", results::number(box.q50)},
@@ -320,11 +294,7 @@ Json sampling_json(const calibration::SamplingReport& report) {
 }
 
 Json evidence_json(const calibration::Calibration& calibration) {
-  Json json = {{"by_bridge", nullptr}, {"by_populations", nullptr}};
-  if (calibration.evidence) {
-    json["by_bridge"] = {{"log_evidence", results::number(calibration.evidence->log_evidence)},
-                         {"mcse", results::number(calibration.evidence->mcse)}};
-  }
+  Json json = {{"by_bridge", shapes::json_of(calibration.evidence)}, {"by_populations", nullptr}};
   if (std::isfinite(calibration.sampling.log_evidence)) {
     json["by_populations"] = {{"log_evidence", results::number(calibration.sampling.log_evidence)},
                               {"mcse", results::number(calibration.sampling.log_evidence_se)}};
@@ -399,7 +369,7 @@ void add_follow_up(const FollowUp& follow_up, Json& json) {
 Json months_json(const assessment::AssessedCalibration& result) {
   Json months = Json::array();
   for (std::size_t i = 0; i < result.month_names.size(); ++i) {
-    months.push_back({{"month", result.month_names[i]}, {"role", role_word(result.roles[i])}});
+    months.push_back({{"month", result.month_names[i]}, {"role", name_of(result.roles[i])}});
   }
   return months;
 }
@@ -442,7 +412,7 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
   }
   Json hyperparameters = Json::array();
   for (const calibration::Summary& s : result.calibration.hyperparameters) {
-    Json entry = summary_json(s);
+    Json entry = shapes::json_of(s);
     entry["prior"] = {{"mean", results::number(s.prior_mean)}, {"sd", results::number(s.prior_sd)}};
     hyperparameters.push_back(std::move(entry));
   }

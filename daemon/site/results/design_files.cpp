@@ -7,6 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "adapters/shapes/shape_json.hpp"
+
+SHAPE(recald::regression::FitQuality, r2_in_sample, r2_left_out, r2_left_out_within_months);
+SHAPE(recald::screening::ScreenedOutput, name, penalty, penalty_best, selected, r2_left_out);
+SHAPE(recald::screening::ParameterEffect, selected, frequency, share, change_mean, change_least,
+      change_most);
+
 namespace recald::daemon {
 namespace {
 
@@ -48,17 +55,11 @@ std::size_t longest(const std::vector<std::string>& names, std::size_t least) {
   return least;
 }
 
-Json quality_json(const FitQuality& fit) {
-  return {{"r2_in_sample", fit.r2_in_sample},
-          {"r2_left_out", fit.r2_left_out},
-          {"r2_left_out_within_months", fit.r2_left_out_within_months}};
-}
-
 Json form_json(const DesignQuality& quality) {
-  Json json = quality_json(quality.all);
+  Json json = shapes::json_of(quality.all);
   Json outputs = Json::object();
   for (const regression::OutputQuality& output : quality.outputs) {
-    outputs[output.name] = quality_json(output.fit);
+    outputs[output.name] = shapes::json_of(output.fit);
     outputs[output.name]["sigma_r"] = output.sigma_r;
   }
   json["outputs"] = outputs;
@@ -147,26 +148,12 @@ bool has(const FittedMetamodel& fitted, MetamodelForm form) {
 std::string screen_json(const screening::Screening& screening,
                         const std::vector<Parameter>& parameters,
                         const std::vector<std::string>& notes, const RunFacts& facts) {
-  Json outputs = Json::array();
-  for (const screening::ScreenedOutput& output : screening.outputs) {
-    outputs.push_back({{"name", output.name},
-                       {"penalty", output.penalty},
-                       {"penalty_best", output.penalty_best},
-                       {"selected", output.selected},
-                       {"r2_left_out", output.r2_left_out}});
-  }
   Json list = Json::array();
   for (std::size_t j = 0; j < screening.parameters.size(); ++j) {
     const screening::ScreenedParameter& parameter = screening.parameters[j];
     Json effects = Json::object();
     for (std::size_t k = 0; k < parameter.effects.size(); ++k) {
-      const screening::ParameterEffect& effect = parameter.effects[k];
-      effects[screening.outputs[k].name] = {{"selected", effect.selected},
-                                            {"frequency", effect.frequency},
-                                            {"share", effect.share},
-                                            {"change_mean", effect.change_mean},
-                                            {"change_least", effect.change_least},
-                                            {"change_most", effect.change_most}};
+      effects[screening.outputs[k].name] = shapes::json_of(parameter.effects[k]);
     }
     list.push_back({{"name", parameter.name},
                     {"unit", parameters[j].unit},
@@ -177,8 +164,9 @@ std::string screen_json(const screening::Screening& screening,
                      screening.outputs[static_cast<std::size_t>(parameter.strongest_output)].name},
                     {"effects", effects}});
   }
-  Json json = {
-      {"influential", screening.influential()}, {"parameters", list}, {"outputs", outputs}};
+  Json json = {{"influential", screening.influential()},
+               {"parameters", list},
+               {"outputs", shapes::json_of(screening.outputs)}};
   add_facts(json, notes, facts);
   return json.dump(2) + "\n";
 }

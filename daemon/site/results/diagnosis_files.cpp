@@ -8,9 +8,16 @@
 #include <set>
 
 #include "adapters/results/job_result_json.hpp"
+#include "adapters/shapes/shape_json.hpp"
 #include "core/diagnosis/effect_posterior.hpp"
 #include "core/display/warning.hpp"
 #include "daemon/site/results/diagnosis_words.hpp"
+
+SHAPE(recald::diagnosis::ParameterPosterior, name, unit, mode, sd, q05, q50, q95);
+SHAPE(recald::diagnosis::ScoreGain, sum, se);
+SHAPE(recald::diagnosis::NotIdentifiable, effect, why);
+SHAPE(recald::diagnosis::ModelGap::Figures, nmbe_sim_minus_meas, cvrmse, discrepancy_share,
+      log_score);
 
 namespace recald::daemon {
 namespace {
@@ -50,13 +57,7 @@ Json located_json(const SiteProblem& site, const std::vector<diagnosis::Misfit>&
 Json parameters_json(const SiteProblem& site, const std::vector<ParameterPosterior>& posterior) {
   Json list = Json::array();
   for (const ParameterPosterior& p : posterior) {
-    Json entry = {{"name", p.name},
-                  {"unit", p.unit},
-                  {"mode", results::number(p.mode)},
-                  {"sd", results::number(p.sd)},
-                  {"q05", results::number(p.q05)},
-                  {"q50", results::number(p.q50)},
-                  {"q95", results::number(p.q95)}};
+    Json entry = shapes::json_of(p);
     if (p.is_day()) {
       const auto date = [&](double days) { return metering::to_string(day_after(site, days)); };
       entry["date"] = date(p.mode);
@@ -149,10 +150,8 @@ Json gaps_json(const SiteProblem& site, const std::vector<diagnosis::MeterGap>& 
 /// By meter.
 Json gains_json(const SiteProblem& site, const std::vector<diagnosis::ScoreGain>& gains) {
   Json json = Json::object();
-  for (std::size_t g = 0; g < gains.size(); ++g) {
-    json[site.meters[g].id] = {{"sum", results::number(gains[g].sum)},
-                               {"se", results::number(gains[g].se)}};
-  }
+  for (std::size_t g = 0; g < gains.size(); ++g)
+    json[site.meters[g].id] = shapes::json_of(gains[g]);
   return json;
 }
 
@@ -167,11 +166,7 @@ Json hourly_gap_json(const SiteProblem& site, const diagnosis::GapChange& gap) {
 Json figures_json(const ModelGap& gap, const std::vector<ModelGap::Figures>& figures) {
   Json json = Json::object();
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    json[gap.outputs[i]] = {
-        {"nmbe_sim_minus_meas", results::number(figures[i].nmbe_sim_minus_meas)},
-        {"cvrmse", results::number(figures[i].cvrmse)},
-        {"discrepancy_share", results::number(figures[i].discrepancy_share)},
-        {"log_score", results::number(figures[i].log_score)}};
+    json[gap.outputs[i]] = shapes::json_of(figures[i]);
   }
   return json;
 }
@@ -183,9 +178,7 @@ Json change_json(const ModelGap& gap) {
   Json json = Json::object();
   for (std::size_t i = 0; i < gap.change.size(); ++i) {
     const ModelGap::Change& change = gap.change[i];
-    json[gap.outputs[i]] = {{"log_score",
-                             {{"sum", results::number(change.log_score.sum)},
-                              {"se", results::number(change.log_score.se)}}},
+    json[gap.outputs[i]] = {{"log_score", shapes::json_of(change.log_score)},
                             {"nmbe_size", interval(change.nmbe_size)},
                             {"cvrmse", interval(change.cvrmse)}};
   }
@@ -235,13 +228,7 @@ Json additions_json(const SiteProblem& site, const Diagnosis& d) {
   return list;
 }
 
-Json not_identifiable_json(const Diagnosis& d) {
-  Json list = Json::array();
-  for (const diagnosis::NotIdentifiable& n : not_seen_here(d)) {
-    list.push_back({{"effect", n.effect}, {"why", n.why}});
-  }
-  return list;
-}
+Json not_identifiable_json(const Diagnosis& d) { return shapes::json_of(not_seen_here(d)); }
 
 }  // namespace
 

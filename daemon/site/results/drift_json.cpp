@@ -5,9 +5,17 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/results/job_result_json.hpp"
+#include "adapters/shapes/shape_json.hpp"
 #include "core/display/warning.hpp"
 #include "daemon/site/results/drift_summary.hpp"
 #include "daemon/site/results/provenance_json.hpp"
+
+SHAPE(recald::drift::ForecastRecord, measured, mean, sd, q05, q50, q95);
+SHAPE(recald::drift::Surprise, pit, standardised, log_score, crps);
+SHAPE(recald::drift::CalibrationCheck, mean, sd, lag_one, pvalue);
+SHAPE(recald::drift::WatchState, log_evidence, log_threshold, cusum_upper, cusum_lower,
+      change_within_year, calibration);
+SHAPE(recald::daemon::DailyState, log_evidence, log_threshold, lag_one, month_factor);
 
 namespace recald::daemon {
 namespace {
@@ -16,41 +24,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json record_json(const drift::ForecastRecord& record, const std::string& month) {
-  return {{"month", month},
-          {"measured", results::number(record.measured)},
-          {"mean", results::number(record.mean)},
-          {"sd", results::number(record.sd)},
-          {"q05", results::number(record.q05)},
-          {"q50", results::number(record.q50)},
-          {"q95", results::number(record.q95)},
-          {"pit", results::number(record.surprise.pit)},
-          {"standardised", results::number(record.surprise.standardised)},
-          {"log_score", results::number(record.surprise.log_score)},
-          {"crps", results::number(record.surprise.crps)}};
-}
-
-Json state_json(const drift::WatchState& state) {
-  Json json = {{"log_evidence", results::number(state.log_evidence)},
-               {"log_threshold", results::number(state.log_threshold)},
-               {"cusum_upper", results::number(state.cusum_upper)},
-               {"cusum_lower", results::number(state.cusum_lower)},
-               {"change_within_year", results::number(state.change_within_year)},
-               {"calibration", nullptr}};
-  if (const auto& check = state.calibration) {
-    json["calibration"] = {{"mean", results::number(check->mean)},
-                           {"sd", results::number(check->sd)},
-                           {"lag_one", results::number(check->lag_one)},
-                           {"pvalue", results::number(check->pvalue)}};
-  }
+  Json json = {{"month", month}};
+  json.update(shapes::json_of(record));
+  json.update(shapes::json_of(record.surprise));
   return json;
-}
-
-Json daily_json(const std::optional<DailyState>& daily) {
-  if (!daily) return nullptr;
-  return {{"log_evidence", results::number(daily->log_evidence)},
-          {"log_threshold", results::number(daily->log_threshold)},
-          {"lag_one", results::number(daily->lag_one)},
-          {"month_factor", results::number(daily->month_factor)}};
 }
 
 Json outputs_json(const SiteDrift& drift) {
@@ -66,8 +43,8 @@ Json outputs_json(const SiteDrift& drift) {
                     {"meter", output.meter},
                     {"unit", output.unit},
                     {"forecast_by", output.by_level ? "level" : "model"},
-                    {"state", state_json(output.state)},
-                    {"daily", daily_json(output.daily)},
+                    {"state", shapes::json_of(output.state)},
+                    {"daily", shapes::json_of(output.daily)},
                     {"months", months}});
   }
   return list;

@@ -316,9 +316,8 @@ std::optional<PeriodConfig> period_of(const SiteConfig& site, const Recording& r
 }
 
 Result<SiteWeather> weather_of(const OpenSite& site) {
-  const auto sensors = open_sensors(site.config);
-  if (!sensors) return tl::unexpected(sensors.error());
-  return load_weather(site.config, site.calendar, whole_period(site.config), sensors->get());
+  const auto sensors = TRY(open_sensors(site.config));
+  return load_weather(site.config, site.calendar, whole_period(site.config), sensors.get());
 }
 
 }  // namespace
