@@ -8,9 +8,11 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "adapters/energyplus/program.hpp"
 #include "adapters/system/child_process.hpp"
+#include "adapters/system/file_lock.hpp"
 #include "command_line.hpp"
 #include "simulators/energyplus/model_files.hpp"
 #include "simulators/energyplus/run_readings.hpp"
@@ -120,6 +122,14 @@ class OnEnergyPlus : public ::testing::Test {
     program_ = program->executable;
     write_text(folder / "readings.csv", readings_of("truth", kYears));
     write_text(folder / "site.toml", std::string{kSite});
+    // Asked once runs are being made: nobody else may make any in the folder.
+    std::jthread other{[&](const std::stop_token& stop) {
+      while (!stop.stop_requested() &&
+             !std::filesystem::exists(folder / "site-doe/doe_inputs.csv")) {
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+      }
+      folder_was_locked_ = system::FileLock::is_held(folder / "site-doe/lock");
+    }};
     made_ = new Outcome{run({"doe", (folder / "site.toml").string()})};
   }
   static void TearDownTestSuite() {
@@ -168,10 +178,12 @@ class OnEnergyPlus : public ::testing::Test {
   static TemporaryFolder* folder_;
   static Outcome* made_;
   static std::filesystem::path program_;
+  static bool folder_was_locked_;
 };
 TemporaryFolder* OnEnergyPlus::folder_ = nullptr;
 Outcome* OnEnergyPlus::made_ = nullptr;
 std::filesystem::path OnEnergyPlus::program_;
+bool OnEnergyPlus::folder_was_locked_ = false;
 
 constexpr double kLampsLeft = 0.6;
 constexpr std::string_view kLamps = R"([[measure]]
@@ -204,6 +216,11 @@ TEST_F(OnEnergyPlus, RunsAreUsedAndNeverMadeAgain) {
   EXPECT_LT(result["after"]["calibration"]["chilled_water_daily_kWh"]["cvrmse"], 0.10);
   const Outcome again = run({"doe", path("site.toml"), "--json"});
   EXPECT_EQ(Json::parse(again.out)["runs_before"], 10);
+}
+
+TEST_F(OnEnergyPlus, RunsAreMadeByOneAtATime) {
+  EXPECT_TRUE(folder_was_locked_);
+  EXPECT_FALSE(system::FileLock::is_held(path("site-doe/lock")));
 }
 
 TEST_F(OnEnergyPlus, WhatTheModelHasIsShownAsLinesToPaste) {

@@ -65,17 +65,13 @@ Result<std::vector<regression::ColumnScale>> scales_of_priors(
 Result<Metamodel> given_metamodel(const std::filesystem::path& file,
                                   const doe::DesignFolder& design, const MonthInputs& covered,
                                   const MonthInputs& all) {
-  auto terms = doe::read_metamodel(file);
-  if (!terms) return tl::unexpected(terms.error());
-  if (auto fits = check_given_outputs(design.output_names); !fits) {
-    return tl::unexpected(fits.error());
-  }
-  auto parameter_scales = scales_of_priors(design.parameters);
-  if (!parameter_scales) return tl::unexpected(parameter_scales.error());
+  auto terms = TRY(doe::read_metamodel(file));
+  TRY(check_given_outputs(design.output_names));
+  auto parameter_scales = TRY(scales_of_priors(design.parameters));
   model::metamodel::GivenRegression given;
-  given.terms = std::move(*terms);
+  given.terms = std::move(terms);
   for (const Parameter& parameter : design.parameters) given.parameters.push_back(parameter.name);
-  given.parameter_scales = std::move(*parameter_scales);
+  given.parameter_scales = std::move(parameter_scales);
   given.inputs = covered.names;
   given.input_scales = regression::column_scales(covered.values);
   given.output_scales = regression::output_scales(design_data(design));
@@ -85,13 +81,11 @@ Result<Metamodel> given_metamodel(const std::filesystem::path& file,
     return failure(model.error().code,
                    fmt::format("'{}': {}", file.string(), model.error().message));
   };
-  auto calibration = model_over(covered);
-  if (!calibration) return tl::unexpected(calibration.error());
-  auto whole = model_over(all);
-  if (!whole) return tl::unexpected(whole.error());
+  auto calibration = TRY(model_over(covered));
+  auto whole = TRY(model_over(all));
   Metamodel result;
-  result.calibration = std::move(*calibration);
-  result.whole = std::move(*whole);
+  result.calibration = std::move(calibration);
+  result.whole = std::move(whole);
   result.inputs = {all.names, all.values};
   result.facts = {.form = "given",
                   .why = fmt::format("'{}', taken as it is and as free of error.", file.string())};
@@ -108,18 +102,16 @@ MonthInputs after_design(const MonthInputs& all, std::size_t covered) {
 
 Result<Metamodel> metamodel_of(const FittedMetamodel& fitted, const MetamodelOptions& options,
                                const MonthInputs& covered, const MonthInputs& all) {
-  auto calibration = model_over(fitted, covered);
-  if (!calibration) return tl::unexpected(calibration.error());
+  auto calibration = TRY(model_over(fitted, covered));
   Metamodel result;
-  result.whole = (*calibration)->clone();
-  result.calibration = std::move(*calibration);
+  result.whole = calibration->clone();
+  result.calibration = std::move(calibration);
   result.sigma_calibration = fitted.error_sd();
   const MonthInputs later = after_design(all, covered.months.size());
   if (!later.months.empty()) {
-    auto validation = model::metamodel::model_of(*fitted.seed_form, later);
-    if (!validation) return tl::unexpected(validation.error());
+    auto validation = TRY(model::metamodel::model_of(*fitted.seed_form, later));
     result.whole = std::make_unique<JoinedMonthsModel>(std::move(result.whole),
-                                                       on_heap(std::move(*validation)));
+                                                       on_heap(std::move(validation)));
     result.sigma_validation = fitted.sigma_r(MetamodelForm::seed);
   }
   const auto columns = regression::input_columns(all.names, all.values, options.wind_in_degrees);
@@ -215,9 +207,8 @@ Result<std::vector<int>> choose_parameters(const doe::DesignFolder& design,
     return named_parameters(design.parameters, options.parameters);
   }
   Rng rng{options.metamodel.seed, streams::kScreening.first};
-  auto screening = screening::screen(design_data(design), {}, rng);
-  if (!screening) return tl::unexpected(screening.error());
-  result.screening = std::move(*screening);
+  auto screening = TRY(screening::screen(design_data(design), {}, rng));
+  result.screening = std::move(screening);
   std::vector<int> kept;
   for (std::size_t j = 0; j < result.screening->parameters.size(); ++j) {
     const bool matters = result.screening->parameters[j].verdict == screening::Verdict::influential;
@@ -308,9 +299,7 @@ Result<Metamodel> make_metamodel(const doe::DesignFolder& design, const doe::Mon
     return given_metamodel(options.given_metamodel, design, covered,
                            month_inputs(design.inputs, months));
   }
-  auto fit = fit_metamodel(design_data(design), options.metamodel);
-  if (!fit) return tl::unexpected(fit.error());
-  result.fitted = std::move(*fit);
+  result.fitted = TRY(fit_metamodel(design_data(design), options.metamodel));
   const FittedMetamodel& fitted = *result.fitted;
   display::add_notes(fitted.notes, result.warnings);
   const auto months = all_months(design, measured, fitted.seed_form.has_value(), result.warnings);
@@ -363,39 +352,31 @@ Result<DesignCalibration> calibrate_design(const doe::DesignFolder& whole_design
   DesignCalibration result;
   display::add_notes(design.notes, result.warnings);
   display::add_notes(measured.notes, result.warnings);
-  const auto free = choose_parameters(design, options, result);
-  if (!free) return tl::unexpected(free.error());
-  fix_the_others(design.parameters, *free, result);
-  auto metamodel = make_metamodel(design, measured.table, options, result);
-  if (!metamodel) return tl::unexpected(metamodel.error());
+  const auto free = TRY(choose_parameters(design, options, result));
+  fix_the_others(design.parameters, free, result);
+  auto metamodel = TRY(make_metamodel(design, measured.table, options, result));
 
   const std::size_t calibration_months = design.months.size();
   auto problem = assessment::problem_of(result, calibration_months);
   const assessment::WholePeriod whole_period{
-      metamodel->inputs,
-      assessment::held_parameter_errors(*metamodel->whole, design.parameters, *free)};
-  problem.inputs = {metamodel->inputs.names, metamodel->inputs.values.topRows(
-                                                 static_cast<Eigen::Index>(calibration_months))};
-  problem.model_error_sd = metamodel->sigma_calibration;
+      metamodel.inputs,
+      assessment::held_parameter_errors(*metamodel.whole, design.parameters, free)};
+  problem.inputs = {metamodel.inputs.names,
+                    metamodel.inputs.values.topRows(static_cast<Eigen::Index>(calibration_months))};
+  problem.model_error_sd = metamodel.sigma_calibration;
   problem.common_errors =
-      assessment::held_parameter_errors(*metamodel->calibration, design.parameters, *free);
-  add_model_variances(*metamodel, calibration_months, result);
+      assessment::held_parameter_errors(*metamodel.calibration, design.parameters, free);
+  add_model_variances(metamodel, calibration_months, result);
   const std::vector<double> means = prior_means(design.parameters);
-  const FixedParametersModel model{std::move(metamodel->calibration), means, *free};
-  FixedParametersModel whole{std::move(metamodel->whole), means, *free};
-  result.metamodel = std::move(metamodel->facts);
+  const FixedParametersModel model{std::move(metamodel.calibration), means, free};
+  FixedParametersModel whole{std::move(metamodel.whole), means, free};
+  result.metamodel = std::move(metamodel.facts);
 
-  calibration::DesignRuns runs{design.theta(Eigen::all, *free), design.outputs};
+  calibration::DesignRuns runs{design.theta(Eigen::all, free), design.outputs};
   if (options.given_metamodel.empty()) assessment::set_aside_unresponsive(runs, result, problem);
-  if (auto done =
-          assessment::calibrate_into(model, problem, options.calibration, options.prior_sensitivity,
-                                     std::move(runs), context, result);
-      !done) {
-    return tl::unexpected(done.error());
-  }
-  if (auto assessed = assessment::assess(whole, whole_period, {}, context, result); !assessed) {
-    return tl::unexpected(assessed.error());
-  }
+  TRY(assessment::calibrate_into(model, problem, options.calibration, options.prior_sensitivity,
+                                 std::move(runs), context, result));
+  TRY(assessment::assess(whole, whole_period, {}, context, result));
   return result;
 }
 

@@ -262,11 +262,9 @@ Result<DesignExtension> extend_design(doe::DesignFolder design, const doe::Desig
                                       const weather::WeatherSeries& weather,
                                       const metering::LocalCalendar& calendar,
                                       const model::Holidays& holidays, std::vector<Month> wanted) {
-  const auto simulated = calendar_months(design);
-  if (!simulated) return tl::unexpected(simulated.error());
+  const auto simulated = TRY(calendar_months(design));
   DesignExtension extension;
-  extension.added =
-      months_to_add(std::move(wanted), *simulated, weather, calendar, extension.notes);
+  extension.added = months_to_add(std::move(wanted), simulated, weather, calendar, extension.notes);
   const auto outputs = static_cast<Index>(design.output_names.size());
   extension.error_sd = Eigen::VectorXd::Zero(outputs);
   extension.month_error_sd.resize(outputs, static_cast<Index>(extension.added.size()));
@@ -289,10 +287,9 @@ Result<DesignExtension> extend_design(doe::DesignFolder design, const doe::Desig
   }
   extension.month_error_sd = seasonal_errors(*response, seen.months, extension.added);
   note_beyond(seen, next, extension.notes);
-  const auto inputs = added_inputs(design, *simulated, extension.added, weather, calendar);
-  if (!inputs) return tl::unexpected(inputs.error());
-  design.inputs = merged(design.inputs, *inputs);
-  merge_outputs(inputs->months, predict_months(*response, next.response), design);
+  const auto inputs = TRY(added_inputs(design, simulated, extension.added, weather, calendar));
+  design.inputs = merged(design.inputs, inputs);
+  merge_outputs(inputs.months, predict_months(*response, next.response), design);
   extension.design = std::move(design);
   return extension;
 }

@@ -149,12 +149,11 @@ Result<std::vector<regression::CheckedOutput>> check_metamodel(
                    "the runs to check with are of other parameters, outputs or months than the "
                    "design's; make both from one site file");
   }
-  auto model = model_over(fitted, {design.inputs, design.months, design.month_inputs});
-  if (!model) return tl::unexpected(model.error());
+  auto model = TRY(model_over(fitted, {design.inputs, design.months, design.month_inputs}));
   Eigen::MatrixXd predicted(check.values.rows(), check.values.cols());
   for (Eigen::Index i = 0; i < predicted.rows(); ++i) {
     const std::vector<double> theta{check.theta.row(i).begin(), check.theta.row(i).end()};
-    const std::vector<double> outputs = evaluate(**model, theta);
+    const std::vector<double> outputs = evaluate(*model, theta);
     predicted.row(i) = Eigen::Map<const Eigen::RowVectorXd>(outputs.data(), predicted.cols());
   }
   return regression::check_predictions(check, predicted);

@@ -69,24 +69,20 @@ Result<DesignSite> check_design_site(const doe::DesignFolder& design) {
   const std::filesystem::path file = design.folder / kSiteFile;
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return DesignSite{};
-  const auto note = read_note(file);
-  if (!note) return tl::unexpected(note.error());
-  const std::filesystem::path site_file = (design.folder / note->site).lexically_normal();
+  const auto note = TRY(read_note(file));
+  const std::filesystem::path site_file = (design.folder / note.site).lexically_normal();
   const auto site = load_site(site_file);
   if (!site) {
-    return DesignSite{note->effects,
+    return DesignSite{note.effects,
                       {fmt::format("The design's site file '{}' cannot be read, so nobody knows "
                                    "whether its model has effects that the design lacks.",
                                    site_file.string())},
                       site_file};
   }
-  const auto effects = active_effects(*site);
-  if (!effects) return tl::unexpected(effects.error());
-  if (auto in = require_in_design(*effects, design.parameters); !in) {
-    return tl::unexpected(in.error());
-  }
-  const auto in_force = parameter_names(*effects);
-  for (const std::string& name : note->effects) {
+  const auto effects = TRY(active_effects(*site));
+  TRY(require_in_design(effects, design.parameters));
+  const auto in_force = parameter_names(effects);
+  for (const std::string& name : note.effects) {
     if (std::ranges::find(in_force, name) != in_force.end()) continue;
     return failure(ErrorCode::unsupported,
                    fmt::format("metamodel: the design varies {}, of an effect that the model no "
@@ -95,7 +91,7 @@ Result<DesignSite> check_design_site(const doe::DesignFolder& design) {
   }
   DesignSite result;
   result.site_file = site_file;
-  for (const AddedEffect& effect : *effects) {
+  for (const AddedEffect& effect : effects) {
     if (teaches(effect, design)) continue;
     const auto names = parameter_names({effect});
     result.held.insert(result.held.end(), names.begin(), names.end());

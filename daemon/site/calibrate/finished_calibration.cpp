@@ -9,14 +9,13 @@ namespace recald::daemon {
 Result<FinishedCalibration> finish_calibration(ModelledSite modelled,
                                                const CalibrateOptions& options,
                                                const calibration::RunContext& context) {
-  auto version = active_version(modelled.site.config);
-  if (!version) return tl::unexpected(version.error());
-  modelled.facts.model_version = version_name(*version, modelled.facts.model_version);
-  auto calibrated = calibrate_site(modelled.site.config, modelled.site.calendar, modelled.recording,
-                                   modelled.weather, options, context, std::move(version->effects));
-  if (!calibrated) return tl::unexpected(calibrated.error());
-  modelled.facts = with_sampling(std::move(modelled.facts), context.seed, calibrated->calibration);
-  return FinishedCalibration{std::move(modelled), std::move(*calibrated)};
+  auto version = TRY(active_version(modelled.site.config));
+  modelled.facts.model_version = version_name(version, modelled.facts.model_version);
+  auto calibrated =
+      TRY(calibrate_site(modelled.site.config, modelled.site.calendar, modelled.recording,
+                         modelled.weather, options, context, std::move(version.effects)));
+  modelled.facts = with_sampling(std::move(modelled.facts), context.seed, calibrated.calibration);
+  return FinishedCalibration{std::move(modelled), std::move(calibrated)};
 }
 
 }  // namespace recald::daemon

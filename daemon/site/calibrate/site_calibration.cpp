@@ -125,17 +125,15 @@ Result<void> take_effects(const SiteConfig& site, const metering::LocalCalendar&
                           const Recording& recording, const SiteWeather& weather,
                           std::vector<diagnosis::AddedEffect> added, SiteCalibration& result) {
   if (added.empty()) return {};
-  auto problem = make_site_problem(site, calendar, recording, weather);
-  if (!problem) return tl::unexpected(problem.error());
-  auto effects = make_model_effects(
-      std::move(added), std::make_shared<const diagnosis::SiteProblem>(std::move(*problem)));
-  if (!effects) return tl::unexpected(effects.error());
-  for (std::size_t j = 0; j < effects->parameters.size(); ++j) {
-    result.definitions.push_back(&effects->labels[j]->definition);
-    result.labels.emplace_back(effects->labels[j]->definition.label);
-    result.parameters.push_back(effects->parameters[j]);
+  auto problem = TRY(make_site_problem(site, calendar, recording, weather));
+  auto effects = TRY(make_model_effects(
+      std::move(added), std::make_shared<const diagnosis::SiteProblem>(std::move(problem))));
+  for (std::size_t j = 0; j < effects.parameters.size(); ++j) {
+    result.definitions.push_back(&effects.labels[j]->definition);
+    result.labels.emplace_back(effects.labels[j]->definition.label);
+    result.parameters.push_back(effects.parameters[j]);
   }
-  result.effects = std::make_shared<const ModelEffects>(std::move(*effects));
+  result.effects = std::make_shared<const ModelEffects>(std::move(effects));
   // Factors of calendar months hold what an effect changes from month to month: it would count
   // twice. The diagnosis went without them too.
   result.profile.loads.month_factor.fill(1.0);
@@ -176,10 +174,9 @@ Result<std::vector<Eigen::VectorXd>> assumed_weather_errors(
   for (const std::size_t variable : weather.assumed) {
     weather::WeatherSeries altered = weather.filled.series;
     weather::assume_sky(altered, place.location, std::array{variable}, weather::kSkyErrorSd);
-    const auto make = whole_model_of(site, parts, months,
-                                     {place.calendar, place.holidays, place.location, altered});
-    if (!make) return tl::unexpected(make.error());
-    errors.push_back(run(*(*make)(*site.building)) - base);
+    const auto make = TRY(whole_model_of(
+        site, parts, months, {place.calendar, place.holidays, place.location, altered}));
+    errors.push_back(run(*make(*site.building)) - base);
   }
   return errors;
 }
@@ -217,9 +214,7 @@ Result<BegunSite> begin_site(const SiteConfig& site, const Recording& recording,
   BegunSite begun;
   SiteCalibration& result = begun.so_far;
   begun.months = choose_months(*site.period, weather, result.warnings);
-  if (auto enough = require_months(begun.months, *site.period, weather); !enough) {
-    return tl::unexpected(enough.error());
-  }
+  TRY(require_months(begun.months, *site.period, weather));
   result.model = site.model->kind;
   result.units = site.units;
   take_months(begun.months, result);
@@ -251,9 +246,8 @@ Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
                                                      const Recording& recording,
                                                      const model::epc::Place& place,
                                                      const std::vector<Month>& months) {
-  const auto meter = electricity_meter(site, recording);
-  if (!meter) return tl::unexpected(meter.error());
-  const std::vector<profile::HourlyLoad> loads = loads_of(**meter, months);
+  const auto meter = TRY(electricity_meter(site, recording));
+  const std::vector<profile::HourlyLoad> loads = loads_of(*meter, months);
   // What an own chiller draws is not told from lights and plugs by months, only by hours.
   if (is_hourly(site) || site.building->chiller_cop) {
     return model::hourly::fit_profile_without_plant(loads, *site.building, place, months);
@@ -273,9 +267,7 @@ Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
   }
   display::Warnings warnings;
   const SiteMonths months = choose_months(*site.period, weather, warnings);
-  if (auto enough = require_months(months, *site.period, weather); !enough) {
-    return tl::unexpected(enough.error());
-  }
+  TRY(require_months(months, *site.period, weather));
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
   return fit_site_profile(site, recording, place, months.calibration);
 }
@@ -295,31 +287,23 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   if (!facts_of(site.model->kind).is_of_building) {
     return prepare_on_runs(site, calendar, recording, weather);
   }
-  auto begun = begin_site(site, recording, weather);
-  if (!begun) return tl::unexpected(begun.error());
-  PreparedSite prepared{.so_far = std::move(begun->so_far)};
-  const SiteMonths& months = begun->months;
+  auto begun = TRY(begin_site(site, recording, weather));
+  PreparedSite prepared{.so_far = std::move(begun.so_far)};
+  const SiteMonths& months = begun.months;
   SiteCalibration& result = prepared.so_far;
-  auto chosen = site_parameters(site);
-  if (!chosen) return tl::unexpected(chosen.error());
-  result.definitions = std::move(chosen->definitions);
-  result.parameters = std::move(chosen->parameters);
+  auto chosen = TRY(site_parameters(site));
+  result.definitions = std::move(chosen.definitions);
+  result.parameters = std::move(chosen.parameters);
   for (const auto* definition : result.definitions) result.labels.emplace_back(definition->label);
   for (const ParameterConfig& config : site.model->parameters) {
     result.prior_sources.push_back(config.source);
   }
-  auto maps = meter_maps(site);
-  if (!maps) return tl::unexpected(maps.error());
+  auto maps = TRY(meter_maps(site));
 
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
-  auto profile = fit_site_profile(site, recording, place, months.calibration);
-  if (!profile) return tl::unexpected(profile.error());
-  result.profile = std::move(*profile);
-  SiteModelParts parts{result.definitions, std::move(*maps), {}, {}, {}};
-  if (auto with = take_effects(site, calendar, recording, weather, std::move(added), result);
-      !with) {
-    return tl::unexpected(with.error());
-  }
+  result.profile = TRY(fit_site_profile(site, recording, place, months.calibration));
+  SiteModelParts parts{result.definitions, std::move(maps), {}, {}, {}};
+  TRY(take_effects(site, calendar, recording, weather, std::move(added), result));
   parts.loads = result.profile.loads;
   parts.effects = result.effects;
   if (parts.effects && !is_hourly(site)) {
@@ -327,34 +311,30 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
     parts.monthly = parts.effects->monthly(theta.first(parts.definitions.size()));
   }
 
-  const auto make = model_of(site, parts, months.calibration, place);
-  if (!make) return tl::unexpected(make.error());
-  prepared.model = (*make)(*site.building);
-  auto whole = whole_model_of(site, parts, months, place);
-  if (!whole) return tl::unexpected(whole.error());
-  prepared.whole_model = (*whole)(*site.building);
+  const auto make = TRY(model_of(site, parts, months.calibration, place));
+  prepared.model = make(*site.building);
+  auto whole = TRY(whole_model_of(site, parts, months, place));
+  prepared.whole_model = whole(*site.building);
 
   const std::vector<double> modes = prior_modes(result.parameters);
-  const auto of_weather =
-      assumed_weather_errors(site, parts, months, place, weather, *prepared.whole_model, modes);
-  if (!of_weather) return tl::unexpected(of_weather.error());
+  const auto of_weather = TRY(
+      assumed_weather_errors(site, parts, months, place, weather, *prepared.whole_model, modes));
 
   prepared.parts = parts;
   parts.loads = assessment::more_use(parts.loads);
-  const auto with_more = whole_model_of(site, parts, months, place);
-  if (!with_more) return tl::unexpected(with_more.error());
+  const auto with_more = TRY(whole_model_of(site, parts, months, place));
   prepared.electricity_use =
-      assessment::gain_by_use(*prepared.whole_model, *(*with_more)(*site.building), modes);
+      assessment::gain_by_use(*prepared.whole_model, *with_more(*site.building), modes);
 
   prepared.problem = assessment::problem_of(result, months.calibration.size());
   add_inputs(calendar, weather, months, prepared);
   const auto errors = [&](const ModelFactory& factory, MonthlyModel& model) {
     return assessment::common_errors(*site.building, factory, result.outputs, model, modes);
   };
-  prepared.problem.common_errors = errors(*make, *prepared.model);
-  prepared.common_errors = errors(*whole, *prepared.whole_model);
+  prepared.problem.common_errors = errors(make, *prepared.model);
+  prepared.common_errors = errors(whole, *prepared.whole_model);
   prepared.errors = assessment::kinds_of_common_errors(result.outputs);
-  add_common_errors(*of_weather, {}, prepared);
+  add_common_errors(of_weather, {}, prepared);
   return prepared;
 }
 
@@ -510,35 +490,27 @@ Result<SiteCalibration> calibrate_site(const SiteConfig& site,
     return forecast_meters(site, calendar, recording, weather, std::move(because));
   };
   if (!site.model) return forecast_alone(kNoModel);
-  auto prepared = prepare_site(site, calendar, recording, weather, std::move(added));
-  if (!prepared) return tl::unexpected(prepared.error());
-  auto design = calibration::run_design(*prepared->model, prepared->problem,
-                                        options.calibration.design_runs, context);
-  if (!design) return tl::unexpected(design.error());
-  assessment::set_aside_unresponsive(*design, prepared->so_far, prepared->problem);
+  auto prepared = TRY(prepare_site(site, calendar, recording, weather, std::move(added)));
+  auto design = TRY(calibration::run_design(*prepared.model, prepared.problem,
+                                            options.calibration.design_runs, context));
+  assessment::set_aside_unresponsive(design, prepared.so_far, prepared.problem);
   CalibrateOptions how = options;
   if (options.discrepancy == DiscrepancyForm::sound) {
-    add_model_errors(site, *prepared);
+    add_model_errors(site, prepared);
     // Whoever names a sampler gets the model itself in the chains; a meta-model is fast already.
     how.calibration.emulate = options.calibration.sampling.sampler == nullptr &&
                               facts_of(site.model->kind).is_of_building;
   }
-  if (auto why = why_too_little(site, *prepared)) return forecast_alone(std::move(*why));
-  SiteCalibration result = std::move(prepared->so_far);
-  auto done = result.effects
-                  ? calibrate_with_effects(*prepared, how, std::move(*design), context, result)
-                  : calibrate_all(*prepared, how, std::move(*design), context, result);
-  if (!done) return tl::unexpected(done.error());
+  if (auto why = why_too_little(site, prepared)) return forecast_alone(std::move(*why));
+  SiteCalibration result = std::move(prepared.so_far);
+  TRY(result.effects ? calibrate_with_effects(prepared, how, std::move(design), context, result)
+                     : calibrate_all(prepared, how, std::move(design), context, result));
   result.with = std::make_shared<const CalibratedWith>(CalibratedWith{
-      std::move(prepared->problem), std::move(prepared->errors), std::move(prepared->parts)});
-  const assessment::WholePeriod whole{{prepared->inputs.names, prepared->inputs.values},
-                                      std::move(prepared->common_errors)};
+      std::move(prepared.problem), std::move(prepared.errors), std::move(prepared.parts)});
+  const assessment::WholePeriod whole{{prepared.inputs.names, prepared.inputs.values},
+                                      std::move(prepared.common_errors)};
   const auto yardsticks = yardsticks_of(site, calendar, recording, weather, result);
-  if (auto assessed =
-          assessment::assess(*prepared->whole_model, whole, yardsticks, context, result);
-      !assessed) {
-    return tl::unexpected(assessed.error());
-  }
+  TRY(assessment::assess(*prepared.whole_model, whole, yardsticks, context, result));
   warn_about_unusual_parameters(site, result);
   add_words(recording, weather, result);
   return result;

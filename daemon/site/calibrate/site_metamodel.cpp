@@ -65,10 +65,9 @@ Result<void> require_same_parameters(const SiteConfig& site, const doe::DesignFo
 
 /// The weather that the runs had, where the folder has it.
 Result<weather::WeatherSeries> weather_of_runs(const doe::DesignFolder& design) {
-  auto read =
-      csv::read_weather(design.folder / kRunsWeather, {.values = weather::RecordedValues::mean});
-  if (!read) return tl::unexpected(read.error());
-  return std::move(read->series);
+  auto read = TRY(
+      csv::read_weather(design.folder / kRunsWeather, {.values = weather::RecordedValues::mean}));
+  return std::move(read.series);
 }
 
 /// Both, hour by hour: the first where it has a value.
@@ -117,13 +116,13 @@ Result<NewMonths> add_new_months(const SiteConfig& site, const metering::LocalCa
   if (!days) return cannot(days.error().message);
   const auto of_runs = weather_of_runs(design);
   if (!of_runs) return cannot(of_runs.error().message);
-  auto extended = extend_design(std::move(design), *days, joined(*of_runs, weather.filled.series),
-                                calendar, site.holidays, wanted);
-  if (!extended) return tl::unexpected(extended.error());
-  design = std::move(extended->design);
-  for (std::string& note : extended->notes) design.notes.push_back(std::move(note));
-  NewMonths added{{}, std::move(extended->month_error_sd)};
-  for (const metering::Month month : extended->added) {
+  auto extended =
+      TRY(extend_design(std::move(design), *days, joined(*of_runs, weather.filled.series), calendar,
+                        site.holidays, wanted));
+  design = std::move(extended.design);
+  for (std::string& note : extended.notes) design.notes.push_back(std::move(note));
+  NewMonths added{{}, std::move(extended.month_error_sd)};
+  for (const metering::Month month : extended.added) {
     added.names.push_back(metering::to_string(month));
   }
   return added;
@@ -244,63 +243,54 @@ Result<regression::DesignData> data_in_site_months(const ModelledSite& modelled,
                                                    const SiteCalibration& so_far,
                                                    doe::DesignFolder design,
                                                    const DaysOfDesign& days_of) {
-  const auto added = add_new_months(modelled.site.config, modelled.site.calendar, modelled.weather,
-                                    so_far, days_of, design);
-  if (!added) return tl::unexpected(added.error());
+  TRY(add_new_months(modelled.site.config, modelled.site.calendar, modelled.weather, so_far,
+                     days_of, design));
   return data_of(design, so_far);
 }
 
 Result<PreparedSite> prepare_on_runs(const SiteConfig& site,
                                      const metering::LocalCalendar& calendar,
                                      const Recording& recording, const SiteWeather& weather) {
-  auto begun = begin_site(site, recording, weather);
-  if (!begun) return tl::unexpected(begun.error());
-  PreparedSite prepared{.so_far = std::move(begun->so_far)};
+  auto begun = TRY(begin_site(site, recording, weather));
+  PreparedSite prepared{.so_far = std::move(begun.so_far)};
   SiteCalibration& result = prepared.so_far;
-  auto design = read_runs(site);
-  if (!design) return tl::unexpected(design.error());
-  if (auto same = require_runs_of(*site.model); !same) return tl::unexpected(same.error());
-  if (auto same = require_same_parameters(site, *design); !same) {
-    return tl::unexpected(same.error());
-  }
+  auto design = TRY(read_runs(site));
+  TRY(require_runs_of(*site.model));
+  TRY(require_same_parameters(site, design));
   const auto added_months =
-      add_new_months(site, calendar, weather, result, doe::read_design_days, *design);
-  if (!added_months) return tl::unexpected(added_months.error());
-  add_prediction_errors(*added_months, *design, result);
-  const auto data = data_of(*design, result);
-  if (!data) return tl::unexpected(data.error());
-  display::add_notes(design->notes, result.warnings);
+      TRY(add_new_months(site, calendar, weather, result, doe::read_design_days, design));
+  add_prediction_errors(added_months, design, result);
+  const auto data = TRY(data_of(design, result));
+  display::add_notes(design.notes, result.warnings);
 
   Rng rng{kSeed, streams::kScreening.first};
-  auto screening = screening::screen(*data, {}, rng);
-  if (!screening) return tl::unexpected(screening.error());
-  const std::vector<int> free = influential(*screening);
+  auto screening = TRY(screening::screen(data, {}, rng));
+  const std::vector<int> free = influential(screening);
   if (free.empty()) {
     return failure(ErrorCode::not_enough_data,
                    "no parameter of the EnergyPlus model moves a meter; widen the priors, or vary "
                    "something else");
   }
-  take_parameters(site, *design, free, result);
-  auto fitted = fit_metamodel(*data, {.form = MetamodelForm::monthly});
-  if (!fitted) return tl::unexpected(fitted.error());
-  result.metamodel = assessment::MetamodelFacts{.form = std::string{to_string(fitted->form)},
-                                                .why = fitted->why,
-                                                .r2_left_out = fitted->quality().all.r2_left_out,
-                                                .sigma_r = fitted->sigma_r(fitted->form)};
+  take_parameters(site, design, free, result);
+  auto fitted = TRY(fit_metamodel(data, {.form = MetamodelForm::monthly}));
+  result.metamodel = assessment::MetamodelFacts{.form = std::string{to_string(fitted.form)},
+                                                .why = fitted.why,
+                                                .r2_left_out = fitted.quality().all.r2_left_out,
+                                                .sigma_r = fitted.sigma_r(fitted.form)};
 
-  const std::size_t calibration_months = begun->months.calibration.size();
-  const std::vector<double> means = prior_means(design->parameters);
+  const std::size_t calibration_months = begun.months.calibration.size();
+  const std::vector<double> means = prior_means(design.parameters);
   const std::span<const std::string> names{result.month_names};
-  prepared.model = model_of(*fitted, names.first(calibration_months), means, free);
-  prepared.whole_model = model_of(*fitted, names, means, free);
+  prepared.model = model_of(fitted, names.first(calibration_months), means, free);
+  prepared.whole_model = model_of(fitted, names, means, free);
   prepared.problem = assessment::problem_of(result, calibration_months);
-  add_inputs(calendar, weather, begun->months, prepared);
-  add_metamodel_errors(*fitted, prepared);
-  auto all_parameters = model::metamodel::model_of(*fitted->monthly_form, names).value();
-  add_common_errors(assessment::held_parameter_errors(all_parameters, design->parameters, free), {},
+  add_inputs(calendar, weather, begun.months, prepared);
+  add_metamodel_errors(fitted, prepared);
+  auto all_parameters = model::metamodel::model_of(*fitted.monthly_form, names).value();
+  add_common_errors(assessment::held_parameter_errors(all_parameters, design.parameters, free), {},
                     prepared);
   result.design = std::make_shared<const SiteDesign>(
-      SiteDesign{std::move(*design), std::move(*screening), std::move(*fitted)});
+      SiteDesign{std::move(design), std::move(screening), std::move(fitted)});
   return prepared;
 }
 

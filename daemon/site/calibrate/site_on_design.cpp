@@ -65,46 +65,38 @@ Result<doe::Measurements> measurements_for(const doe::DesignFolder& design,
 Result<FinishedDesign> calibrate_on_metamodel(const ModelledSite& modelled,
                                               const std::filesystem::path& folder,
                                               const calibration::RunContext& context) {
-  auto design = doe::read_design_folder(folder);
-  if (!design) return tl::unexpected(design.error());
-  for (std::string& note : set_aside_outliers(*design)) design->notes.push_back(std::move(note));
-  auto design_site = check_design_site(*design);
-  if (!design_site) return tl::unexpected(design_site.error());
+  auto design = TRY(doe::read_design_folder(folder));
+  for (std::string& note : set_aside_outliers(design)) design.notes.push_back(std::move(note));
+  auto design_site = TRY(check_design_site(design));
   const SiteConfig& site = modelled.site.config;
   std::error_code ignored;
-  const bool is_others = !design_site->site_file.empty() &&
-                         !std::filesystem::equivalent(design_site->site_file, site.file, ignored);
+  const bool is_others = !design_site.site_file.empty() &&
+                         !std::filesystem::equivalent(design_site.site_file, site.file, ignored);
   if (is_others) {
     return failure(ErrorCode::unsupported,
                    fmt::format("the design in {} was run for {} and not for this site; run `recald "
                                "doe` for it",
-                               folder.string(), design_site->site_file.string()));
+                               folder.string(), design_site.site_file.string()));
   }
-  auto version = active_version(site);
-  if (!version) return tl::unexpected(version.error());
+  auto version = TRY(active_version(site));
   FinishedDesign done{.name = site.name, .design = {}, .calibration = {}, .facts = modelled.facts};
-  const auto prepared = prepare_site(site, modelled.site.calendar, modelled.recording,
-                                     modelled.weather, std::move(version->effects));
-  if (!prepared) return tl::unexpected(prepared.error());
-  const auto measured = measurements_for(*design, *prepared);
-  if (!measured) return tl::unexpected(measured.error());
+  const auto prepared = TRY(prepare_site(site, modelled.site.calendar, modelled.recording,
+                                         modelled.weather, std::move(version.effects)));
+  const auto measured = TRY(measurements_for(design, prepared));
 
   DesignCalibrationOptions options;
-  options.held = std::move(design_site->held);
-  auto calibrated = calibrate_design(*design, *measured, options, context);
-  if (!calibrated) return tl::unexpected(calibrated.error());
-  done.calibration = std::move(*calibrated);
-  display::add_notes(design_site->notes, done.calibration.warnings);
-  display::add_notes(measured->notes, done.calibration.warnings);
-  const auto design_facts = facts_of_files(design->files, name_of(ModelKind::metamodel));
-  if (!design_facts) return tl::unexpected(design_facts.error());
+  options.held = std::move(design_site.held);
+  done.calibration = TRY(calibrate_design(design, measured, options, context));
+  display::add_notes(design_site.notes, done.calibration.warnings);
+  display::add_notes(measured.notes, done.calibration.warnings);
+  const auto design_facts = TRY(facts_of_files(design.files, name_of(ModelKind::metamodel)));
   system::Sha256 both;
   both.add(modelled.facts.data_revision);
-  both.add(design_facts->data_revision);
+  both.add(design_facts.data_revision);
   done.facts.data_revision = both.hex();
-  done.facts.model_version = design_facts->model_version;
+  done.facts.model_version = design_facts.model_version;
   done.facts = with_sampling(std::move(done.facts), context.seed, done.calibration.calibration);
-  done.design = std::move(*design);
+  done.design = std::move(design);
   return done;
 }
 

@@ -54,8 +54,7 @@ Result<void> keep_days(const std::filesystem::path& folder, const doe::DesignPla
     ids.push_back(id);
     rows.push_back(i);
   }
-  const auto ran = run_by.run(plan.theta(rows, Eigen::all), executor, observer);
-  if (!ran) return tl::unexpected(ran.error());
+  TRY(run_by.run(plan.theta(rows, Eigen::all), executor, observer));
   if (const auto failed = run_by.failed_runs(); !failed.empty()) {
     return failure(
         ErrorCode::invalid_value,
@@ -148,7 +147,7 @@ Result<void> require_runs_of(const ModelConfig& model) {
 }
 
 Result<system::FileLock> lock_runs(const std::filesystem::path& folder) {
-  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  TRY(system::make_folder(folder));
   auto lock = system::FileLock::take(folder / "lock");
   if (lock || lock.error().code != ErrorCode::unsupported) return lock;
   return failure(
@@ -160,26 +159,22 @@ Result<MadeRuns> make_planned_runs(const std::filesystem::path& folder, const do
                                    Engine& run_by, const energyplus::EnergyPlusEngine& engine,
                                    bool with_days, const ForEachIndex& executor,
                                    const Engine::Observer& observer) {
-  auto runs = doe::FolderEngine::open(folder, plan, &run_by);
-  if (!runs) return tl::unexpected(runs.error());
+  auto runs = TRY(doe::FolderEngine::open(folder, plan, &run_by));
   MadeRuns made{.outputs = plan.output_names,
                 .months = plan.months.size(),
                 .total = static_cast<int>(plan.theta.rows()),
-                .before = runs->done_count()};
+                .before = runs.done_count()};
   for (const Parameter& parameter : plan.parameters) made.parameters.push_back(parameter.name);
-  if (auto ran = runs->run(plan.theta, executor, observer); !ran) {
-    return tl::unexpected(ran.error());
-  }
-  made.failed = static_cast<int>(runs->failed().size());
+  TRY(runs.run(plan.theta, executor, observer));
+  made.failed = static_cast<int>(runs.failed().size());
   if (made.failed == made.total) {
     return failure(ErrorCode::invalid_value, fmt::format("every run failed, the first because: {}",
-                                                         runs->failed().begin()->second));
+                                                         runs.failed().begin()->second));
   }
   std::error_code ignored;
   const bool has_days = std::filesystem::exists(doe::days_file(folder), ignored);
   if (with_days && (made.before < made.total || !has_days)) {
-    auto kept = keep_days(folder, plan, *runs, run_by, engine, executor, observer);
-    if (!kept) return tl::unexpected(kept.error());
+    TRY(keep_days(folder, plan, runs, run_by, engine, executor, observer));
   }
   return made;
 }
@@ -196,43 +191,35 @@ Result<MadeRuns> make_runs(const ModelledSite& modelled, const RunsOptions& opti
   ModelConfig model = *site.model;
   if (!options.folder.empty()) model.energyplus->design = options.folder;
   const std::filesystem::path& folder = model.energyplus->design;
-  auto begun = begin_site(site, modelled.recording, modelled.weather);
-  if (!begun) return tl::unexpected(begun.error());
-  PreparedSite prepared{.so_far = std::move(begun->so_far)};
-  add_inputs(modelled.site.calendar, modelled.weather, begun->months, prepared);
+  auto begun = TRY(begin_site(site, modelled.recording, modelled.weather));
+  PreparedSite prepared{.so_far = std::move(begun.so_far)};
+  add_inputs(modelled.site.calendar, modelled.weather, begun.months, prepared);
   prepared.problem.month_names = prepared.so_far.month_names;
   std::ranges::sort(prepared.problem.month_names);
 
-  auto lock = lock_runs(folder);
-  if (!lock) return tl::unexpected(lock.error());
+  const auto lock = TRY(lock_runs(folder));
   std::vector<std::string> notes;
-  auto months = begun->months.in_order();
+  auto months = begun.months.in_order();
   auto weather =
-      write_weather_years(modelled.site, modelled.weather, months, folder / kWeatherYears);
-  if (!weather) return tl::unexpected(weather.error());
-  auto engine = make_energyplus_engine(
-      modelled.site, model, {std::move(months), std::move(*weather)}, {},
-      [&] { return !observer || observer(0, 0); }, notes);
-  if (!engine) return tl::unexpected(engine.error());
-  prepared.so_far.parameters = (*engine)->parameters();
+      TRY(write_weather_years(modelled.site, modelled.weather, months, folder / kWeatherYears));
+  auto engine = TRY(make_energyplus_engine(
+      modelled.site, model, {std::move(months), std::move(weather)}, {},
+      [&] { return !observer || observer(0, 0); }, notes));
+  prepared.so_far.parameters = engine->parameters();
   const doe::DesignPlan plan =
       plan_design(prepared, {.runs = options.runs > 0 ? options.runs : model.energyplus->runs,
                              .seed = options.seed,
                              .points = options.points,
-                             .fingerprint = (*engine)->fingerprint()});
+                             .fingerprint = engine->fingerprint()});
   // Runs to check with are not calibrated on.
   const bool is_design = options.points == design::Points::wide;
-  auto made = make_planned_runs(folder, plan, **engine, **engine, is_design, executor, observer);
+  auto made = make_planned_runs(folder, plan, *engine, *engine, is_design, executor, observer);
   if (!made) return made;
   if (is_design) {
-    const auto written =
-        system::write_file(folder / kRunsWeather, weather_text(modelled.weather.filled.series));
-    if (!written) return tl::unexpected(written.error());
+    TRY(system::write_file(folder / kRunsWeather, weather_text(modelled.weather.filled.series)));
   }
-  if (auto noted = note_model(model); !noted) return tl::unexpected(noted.error());
-  if (auto written = write_model_copy(**engine, folder); !written) {
-    return tl::unexpected(written.error());
-  }
+  TRY(note_model(model));
+  TRY(write_model_copy(*engine, folder));
   made->notes = std::move(notes);
   return made;
 }
