@@ -20,9 +20,8 @@ std::string version_name(const diagnosis::ModelVersion& active, const std::strin
 }
 
 Result<std::vector<AddedEffect>> active_effects(const SiteConfig& site) {
-  auto version = active_version(site);
-  if (!version) return tl::unexpected(version.error());
-  return std::move(version->effects);
+  auto version = TRY(active_version(site));
+  return std::move(version.effects);
 }
 
 bool may_teach(const AddedEffect& effect, metering::Month month) {

@@ -95,7 +95,7 @@ Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
                       prior ? prior : diagnosis::wide_prior(name, *site.building));
   };
   for (const ParameterConfig& config : site.model->parameters) {
-    if (auto added = add(config.name, config.prior); !added) return tl::unexpected(added.error());
+    TRY(add(config.name, config.prior));
   }
   for (const std::string_view name : diagnosis::day_part_parameters(*site.building)) {
     if (std::ranges::find(chosen.parameters, name, &Parameter::name) != chosen.parameters.end()) {
@@ -184,13 +184,10 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
                                       std::optional<Month> last_taught) {
   display::Warnings said_elsewhere;
   const std::vector<Month> months = months_with_weather(site, weather, said_elsewhere);
-  if (auto enough = require_building_and_months(site, months.size()); !enough) {
-    return tl::unexpected(enough.error());
-  }
+  TRY(require_building_and_months(site, months.size()));
   SiteProblem problem;
   problem.nominal = *site.building;
-  const auto electricity = electricity_meter(site, recording);
-  if (!electricity) return tl::unexpected(electricity.error());
+  const auto electricity = TRY(electricity_meter(site, recording));
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
   const diagnosis::SplitOptions split;
   problem.month_roles =
@@ -202,40 +199,36 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
         last_taught ? months[i] <= *last_taught : problem.month_roles[i] != diagnosis::Role::show;
     if (is_told) told.push_back(months[i]);
   }
-  auto profile = model::hourly::fit_profile_without_plant(loads_of(**electricity, told),
-                                                          *site.building, place, months);
-  if (!profile) return tl::unexpected(profile.error());
+  auto profile = TRY(model::hourly::fit_profile_without_plant(loads_of(*electricity, told),
+                                                              *site.building, place, months));
   // One profile for all months: factors of calendar months would hide what a
   // diagnosis searches for.
-  profile->loads.month_factor.fill(1.0);
+  profile.loads.month_factor.fill(1.0);
 
-  auto drivers =
-      model::make_drivers(months, calendar, site.holidays, *site.building, profile->loads,
-                          *site.location, weather.filled.series, model::MissingWeather::assume);
-  if (!drivers) return tl::unexpected(drivers.error());
-  drivers->has_humidity = drivers->has_humidity && !is_assumed(weather, kHumidity);
-  drivers->has_wind = drivers->has_wind && !is_assumed(weather, kWind);
+  auto drivers = TRY(model::make_drivers(months, calendar, site.holidays, *site.building,
+                                         profile.loads, *site.location, weather.filled.series,
+                                         model::MissingWeather::assume));
+  drivers.has_humidity = drivers.has_humidity && !is_assumed(weather, kHumidity);
+  drivers.has_wind = drivers.has_wind && !is_assumed(weather, kWind);
   problem.has_sun = !is_assumed(weather, kSun);
-  problem.loads = profile->loads;
-  problem.drivers = std::make_shared<const model::Drivers>(std::move(*drivers));
+  problem.loads = profile.loads;
+  problem.drivers = std::make_shared<const model::Drivers>(std::move(drivers));
 
-  const auto maps = meter_maps(site);
-  if (!maps) return tl::unexpected(maps.error());
+  const auto maps = TRY(meter_maps(site));
   problem.measured_kW.resize(static_cast<Eigen::Index>(problem.drivers->hours.size()),
-                             static_cast<Eigen::Index>(maps->size()));
-  for (std::size_t k = 0; k < maps->size(); ++k) {
+                             static_cast<Eigen::Index>(maps.size()));
+  for (std::size_t k = 0; k < maps.size(); ++k) {
     const std::string& id = site.model->outputs[k];
     const std::size_t meter = *site.meter_index(id);
-    problem.meters.push_back(priced(site, meter, recording.meters[meter], (*maps)[k]));
+    problem.meters.push_back(priced(site, meter, recording.meters[meter], maps[k]));
     problem.measured_kW.col(static_cast<Eigen::Index>(k)) =
         hours_of(recording.meters[meter], *problem.drivers);
   }
   problem.currency = site.tariff.currency;
   problem.units = site.units;
-  auto chosen = choose_parameters(site);
-  if (!chosen) return tl::unexpected(chosen.error());
-  problem.definitions = std::move(chosen->definitions);
-  problem.parameters = std::move(chosen->parameters);
+  auto chosen = TRY(choose_parameters(site));
+  problem.definitions = std::move(chosen.definitions);
+  problem.parameters = std::move(chosen.parameters);
   problem.day_parts = diagnosis::make_day_parts(*problem.drivers);
   problem.measured_parts_kW = diagnosis::measured_parts(problem.day_parts, problem.measured_kW);
   problem.roles = diagnosis::part_roles(problem.day_parts, problem.month_roles, split.buffer_days);

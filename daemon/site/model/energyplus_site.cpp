@@ -27,9 +27,8 @@ constexpr std::size_t kManyFields = 200;
 Result<energyplus::TargetedParameter> find_parameter_in(const energyplus::ModelDocument& model,
                                                         const ParameterConfig& config) {
   if (config.targets.empty()) {
-    auto known = energyplus::find_known_parameter(model, config.name, config.prior);
-    if (!known) return tl::unexpected(known.error());
-    return energyplus::TargetedParameter{std::move(*known)};
+    auto known = TRY(energyplus::find_known_parameter(model, config.name, config.prior));
+    return energyplus::TargetedParameter{std::move(known)};
   }
   energyplus::TargetedParameter found{{config.name, config.unit, *config.prior},
                                       {},
@@ -48,10 +47,9 @@ Result<energyplus::TargetedParameter> find_parameter_in(const energyplus::ModelD
 
 Result<std::shared_ptr<const energyplus::ModelEffect>> find_effect_in(
     const energyplus::ModelDocument& model, const EffectOfModel& effect) {
-  auto patch = energyplus::find_effect_patch(model, effect.effect);
-  if (!patch) return tl::unexpected(patch.error());
+  auto patch = TRY(energyplus::find_effect_patch(model, effect.effect));
   return std::make_shared<const energyplus::ModelEffect>(
-      energyplus::ModelEffect{std::move(*patch), effect.values, effect.from, effect.to});
+      energyplus::ModelEffect{std::move(patch), effect.values, effect.from, effect.to});
 }
 
 void note_wide_targets(const std::vector<energyplus::TargetedParameter>& parameters,
@@ -146,12 +144,10 @@ Result<void> require_runnable(const ModelConfig& model) {
 }
 
 Result<EnergyPlusSite> open_energyplus(const EnergyPlusConfig& config) {
-  auto program = energyplus::find_program(config.program);
-  if (!program) return tl::unexpected(program.error());
-  auto document = energyplus::read_model(config.file, *program);
-  if (!document) return tl::unexpected(document.error());
-  energyplus::prepare_for_parameters(*document);
-  return EnergyPlusSite{std::move(*program), std::move(*document)};
+  auto program = TRY(energyplus::find_program(config.program));
+  auto document = TRY(energyplus::read_model(config.file, program));
+  energyplus::prepare_for_parameters(document);
+  return EnergyPlusSite{std::move(program), std::move(document)};
 }
 
 Result<std::vector<energyplus::TargetedParameter>> find_parameters(
@@ -160,16 +156,13 @@ Result<std::vector<energyplus::TargetedParameter>> find_parameters(
   std::map<const EffectOfModel*, std::shared_ptr<const energyplus::ModelEffect>> effects;
   for (const ParameterConfig& parameter : parameters) {
     if (!parameter.effect) {
-      auto found = find_parameter_in(document, parameter);
-      if (!found) return tl::unexpected(found.error());
-      all.push_back(std::move(*found));
+      auto found = TRY(find_parameter_in(document, parameter));
+      all.push_back(std::move(found));
       continue;
     }
     auto& effect = effects[parameter.effect.get()];
     if (!effect) {
-      auto found = find_effect_in(document, *parameter.effect);
-      if (!found) return tl::unexpected(found.error());
-      effect = std::move(*found);
+      effect = TRY(find_effect_in(document, *parameter.effect));
     }
     all.push_back({.parameter = {parameter.name, parameter.unit, *parameter.prior},
                    .targets = {},
@@ -181,19 +174,16 @@ Result<std::vector<energyplus::TargetedParameter>> find_parameters(
 Result<std::map<int, std::filesystem::path>> write_weather_years(
     const OpenSite& site, const SiteWeather& weather, const std::vector<Month>& months,
     const std::filesystem::path& folder) {
-  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
+  TRY(system::make_folder(folder));
   std::map<int, std::filesystem::path> files;
   for (const Month month : months) {
     const int year = static_cast<int>(month.year());
     if (files.contains(year)) continue;
-    const auto text =
-        epw::epw_text(whole_year(weather.filled.series, year, site.calendar), year,
-                      *site.config.location, site.calendar, site.config.holidays, site.config.name);
-    if (!text) return tl::unexpected(text.error());
+    const auto text = TRY(epw::epw_text(whole_year(weather.filled.series, year, site.calendar),
+                                        year, *site.config.location, site.calendar,
+                                        site.config.holidays, site.config.name));
     const auto file = folder / fmt::format("{}.epw", year);
-    if (auto written = system::write_file(file, *text); !written) {
-      return tl::unexpected(written.error());
-    }
+    TRY(system::write_file(file, text));
     files[year] = file;
   }
   return files;
@@ -203,32 +193,27 @@ Result<std::unique_ptr<energyplus::EnergyPlusEngine>> make_energyplus_engine(
     const OpenSite& site, const ModelConfig& model, RunMonths months,
     const std::vector<ParameterConfig>& beside, const std::function<bool()>& keep_going,
     std::vector<std::string>& notes) {
-  if (auto runnable = require_runnable(model); !runnable) {
-    return tl::unexpected(runnable.error());
-  }
-  auto opened = open_energyplus(*model.energyplus);
-  if (!opened) return tl::unexpected(opened.error());
+  TRY(require_runnable(model));
+  auto opened = TRY(open_energyplus(*model.energyplus));
   const std::filesystem::path runs = model.energyplus->design / "runs";
   const energyplus::RunLimits limits{.time_max = model.energyplus->time_max};
   std::vector<energyplus::ModelOutput> outputs = outputs_of(model);
   const Month first = months.months.front();
-  auto tried = energyplus::try_model(opened->model, energyplus::meters_of(outputs), first / 1,
-                                     months.weather.at(static_cast<int>(first.year())), runs,
-                                     opened->program, limits, keep_going);
-  if (!tried) return tl::unexpected(tried.error());
-  note_left_sizes(tried->sizes, notes);
+  auto tried = TRY(energyplus::try_model(opened.model, energyplus::meters_of(outputs), first / 1,
+                                         months.weather.at(static_cast<int>(first.year())), runs,
+                                         opened.program, limits, keep_going));
+  note_left_sizes(tried.sizes, notes);
   std::vector<ParameterConfig> columns = model.parameters;
   columns.insert(columns.end(), beside.begin(), beside.end());
-  auto parameters = find_parameters(tried->model, columns);
-  if (!parameters) return tl::unexpected(parameters.error());
-  note_wide_targets(*parameters, notes);
-  return energyplus::EnergyPlusEngine::make({.model = std::move(tried->model),
-                                             .parameters = std::move(*parameters),
+  auto parameters = TRY(find_parameters(tried.model, columns));
+  note_wide_targets(parameters, notes);
+  return energyplus::EnergyPlusEngine::make({.model = std::move(tried.model),
+                                             .parameters = std::move(parameters),
                                              .outputs = std::move(outputs),
                                              .months = std::move(months.months),
                                              .weather = std::move(months.weather),
                                              .peak_window = site.config.interval,
-                                             .program = std::move(opened->program),
+                                             .program = std::move(opened.program),
                                              .limits = limits,
                                              .folder = runs},
                                             site.calendar);

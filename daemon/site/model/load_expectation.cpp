@@ -58,37 +58,31 @@ std::vector<LoadExpectation::MonthErrors> month_errors(const OpenSite& site,
 
 Result<LoadExpectation> LoadExpectation::learn(OpenSite site, metering::Instant now) {
   site.config.period.reset();
-  if (auto chosen = choose_model(site.config, ModelKind::hourly); !chosen) {
-    return tl::unexpected(chosen.error());
-  }
-  auto modelled = load_modelled_site(std::move(site), now);
-  if (!modelled) return tl::unexpected(modelled.error());
-  const auto problem = make_site_problem(modelled->site.config, modelled->site.calendar,
-                                         modelled->recording, modelled->weather);
-  if (!problem) return tl::unexpected(problem.error());
+  TRY(choose_model(site.config, ModelKind::hourly));
+  auto modelled = TRY(load_modelled_site(std::move(site), now));
+  const auto problem = TRY(make_site_problem(modelled.site.config, modelled.site.calendar,
+                                             modelled.recording, modelled.weather));
   std::vector<model::MeterMap> maps;
-  for (const diagnosis::MeterData& meter : problem->meters) maps.push_back(meter.end_uses);
-  auto bands = bands_of(*problem, maps);
-  auto errors = month_errors(modelled->site, *problem, modelled->weather.filled.series, now);
-  return LoadExpectation{std::move(modelled->site), problem->loads, std::move(maps),
-                         std::move(bands), std::move(errors)};
+  for (const diagnosis::MeterData& meter : problem.meters) maps.push_back(meter.end_uses);
+  auto bands = bands_of(problem, maps);
+  auto errors = month_errors(modelled.site, problem, modelled.weather.filled.series, now);
+  return LoadExpectation{std::move(modelled.site), problem.loads, std::move(maps), std::move(bands),
+                         std::move(errors)};
 }
 
 Result<std::vector<ExpectedMeter>> LoadExpectation::expect(const metering::TimeSpan& span) const {
   const std::vector<metering::Month> months = months_of(site_.calendar, span);
-  const auto live = open_sensors(site_.config);
-  if (!live) return tl::unexpected(live.error());
+  const auto live = TRY(open_sensors(site_.config));
   const auto weather =
-      load_weather(site_.config, site_.calendar, {months.front(), months.back()}, live->get());
-  if (!weather) return tl::unexpected(weather.error());
-  const metering::Instant end = std::min(span.end, weather->filled.series.end());
-  auto drivers = model::make_drivers(months, site_.calendar, site_.config.holidays,
-                                     *site_.config.building, loads_, *site_.config.location,
-                                     continued(weather->filled.series, weather->filled.series.begin,
-                                               end, site_.calendar.month_span(months.back()).end),
-                                     model::MissingWeather::assume);
-  if (!drivers) return tl::unexpected(drivers.error());
-  const auto shared = std::make_shared<const model::Drivers>(std::move(*drivers));
+      TRY(load_weather(site_.config, site_.calendar, {months.front(), months.back()}, live.get()));
+  const metering::Instant end = std::min(span.end, weather.filled.series.end());
+  auto drivers =
+      TRY(model::make_drivers(months, site_.calendar, site_.config.holidays, *site_.config.building,
+                              loads_, *site_.config.location,
+                              continued(weather.filled.series, weather.filled.series.begin, end,
+                                        site_.calendar.month_span(months.back()).end),
+                              model::MissingWeather::assume));
+  const auto shared = std::make_shared<const model::Drivers>(std::move(drivers));
   const Eigen::ArrayXXd expected_kW = modelled_kW(*site_.config.building, shared, maps_);
   // Weather that ended in an earlier month says nothing of this one.
   const bool is_in_month = end >= site_.calendar.month_span(months.back()).begin;

@@ -193,11 +193,8 @@ Result<ModelEffects> make_model_effects(std::vector<AddedEffect> added,
   Eigen::Index parameters = 0;
   std::size_t draws = 0;
   for (const AddedEffect& effect : effects.added) {
-    auto candidate = candidate_of(effect, *effects.site);
-    if (!candidate) return tl::unexpected(candidate.error());
-    if (auto days = check_days(effect, *candidate, *effects.site); !days) {
-      return tl::unexpected(days.error());
-    }
+    auto candidate = TRY(candidate_of(effect, *effects.site));
+    TRY(check_days(effect, candidate, *effects.site));
     for (const diagnosis::EffectParameterRecord& parameter : effect.parameters) {
       if (parameter.draws.empty()) {
         return failure(ErrorCode::not_enough_data,
@@ -208,7 +205,7 @@ Result<ModelEffects> make_model_effects(std::vector<AddedEffect> added,
       draws = std::max(draws, parameter.draws.size());
     }
     parameters += static_cast<Eigen::Index>(effect.parameters.size());
-    effects.candidates.push_back(std::move(*candidate));
+    effects.candidates.push_back(std::move(candidate));
   }
   effects.draws.resize(static_cast<Eigen::Index>(draws), parameters);
   Eigen::Index column = 0;

@@ -109,61 +109,44 @@ Result<void> choose_model(SiteConfig& site, ModelKind kind) {
 
 Result<Recording> record_site(const OpenSite& site, const ReplayOptions& options,
                               VirtualClock& clock, const OnMonthClosed& on_month_closed) {
-  const auto live = open_live_readings(site.config);
-  if (!live) return tl::unexpected(live.error());
-  return replay_meters(site.config, site.calendar, options, clock, on_month_closed, live->get());
+  const auto live = TRY(open_live_readings(site.config));
+  return replay_meters(site.config, site.calendar, options, clock, on_month_closed, live.get());
 }
 
 Result<ModelledSite> load_modelled_site(OpenSite site, metering::Instant now,
                                         const ChoosePeriod& choose) {
   if (site.config.model) leave_out_unmodelled_live_meters(site.config);
   if (site.config.model && site.config.model->energyplus) {
-    const auto version = active_version(site.config);
-    if (!version) return tl::unexpected(version.error());
-    if (auto taken = take_in_effects(*version, *site.config.model); !taken) {
-      return tl::unexpected(taken.error());
-    }
+    const auto version = TRY(active_version(site.config));
+    TRY(take_in_effects(version, *site.config.model));
   }
   VirtualClock clock{metering::Instant{}};
-  auto recording = replay_meters(site.config, site.calendar, {}, clock, {});
-  if (!recording) return tl::unexpected(recording.error());
-  auto live = open_live_readings(site.config);
-  if (!live) return tl::unexpected(live.error());
-  if (*live) {
-    if (auto taken = take_closed_months(site.config, site.calendar, **live, *recording); !taken) {
-      return tl::unexpected(taken.error());
-    }
+  auto recording = TRY(replay_meters(site.config, site.calendar, {}, clock, {}));
+  auto live = TRY(open_live_readings(site.config));
+  if (live) {
+    TRY(take_closed_months(site.config, site.calendar, *live, recording));
   }
   if (site.config.model) {
-    if (auto read = require_live_months(site.config, *recording); !read) {
-      return tl::unexpected(read.error());
-    }
+    TRY(require_live_months(site.config, recording));
   }
   if (choose) {
-    const auto period = choose(site, *recording, now);
-    if (!period) return tl::unexpected(period.error());
-    site.config.period = *period;
+    site.config.period = TRY(choose(site, recording, now));
   } else if (!site.config.period) {
-    const auto months = latest_months(site, *recording, now);
-    if (!months) return tl::unexpected(months.error());
-    site.config.period = PeriodConfig{*months, {}};
+    const auto months = TRY(latest_months(site, recording, now));
+    site.config.period = PeriodConfig{months, {}};
   }
-  if (*live) {
-    auto taken =
-        take_hours(site.config, site.calendar, whole_period(site.config), **live, *recording);
-    if (!taken) return tl::unexpected(taken.error());
+  if (live) {
+    TRY(take_hours(site.config, site.calendar, whole_period(site.config), *live, recording));
   }
-  auto weather = load_weather(site.config, site.calendar, whole_period(site.config), live->get());
-  if (!weather) return tl::unexpected(weather.error());
-  auto facts = facts_of(site.config, *live ? (*live)->digest() : "");
-  if (!facts) return tl::unexpected(facts.error());
-  facts->weather_values = to_string(weather->values);
-  facts->weather = known_weather(*weather);
-  for (const std::size_t variable : weather->assumed) {
-    facts->weather_assumed.emplace_back(weather::kWeatherVariables[variable].name);
+  auto weather =
+      TRY(load_weather(site.config, site.calendar, whole_period(site.config), live.get()));
+  auto facts = TRY(facts_of(site.config, live ? live->digest() : ""));
+  facts.weather_values = to_string(weather.values);
+  facts.weather = known_weather(weather);
+  for (const std::size_t variable : weather.assumed) {
+    facts.weather_assumed.emplace_back(weather::kWeatherVariables[variable].name);
   }
-  return ModelledSite{std::move(site), std::move(*recording), std::move(*weather),
-                      std::move(*facts)};
+  return ModelledSite{std::move(site), std::move(recording), std::move(weather), std::move(facts)};
 }
 
 Result<MonthRange> latest_months(const OpenSite& site, const Recording& recording,

@@ -24,14 +24,14 @@ Result<RunFacts> facts_of(const SiteConfig& site, const std::string& live_digest
   }
   if (site.weather) files.insert(site.weather->files.begin(), site.weather->files.end());
   for (const auto& file : files) {
-    if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
+    TRY(data_digest.add_file(file));
   }
   if (site.model && site.model->energyplus) {
     for (const char* name : {"priors.csv", "doe_inputs.csv", "doe_outputs.csv"}) {
       const auto file = site.model->energyplus->design / name;
       std::error_code ignored;
       if (!std::filesystem::exists(file, ignored)) continue;  // its runs are still to be made
-      if (auto added = data_digest.add_file(file); !added) return tl::unexpected(added.error());
+      TRY(data_digest.add_file(file));
     }
   }
   data_digest.add(live_digest);
@@ -48,7 +48,7 @@ Result<RunFacts> facts_of_files(const std::vector<std::filesystem::path>& files,
                                 std::string_view model) {
   system::Sha256 digest;
   for (const auto& file : files) {
-    if (auto added = digest.add_file(file); !added) return tl::unexpected(added.error());
+    TRY(digest.add_file(file));
   }
   RunFacts facts;
   facts.recald_version = kVersion;

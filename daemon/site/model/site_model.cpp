@@ -64,13 +64,12 @@ void count_days_from(const model::Drivers& first, model::Drivers& drivers) {
 Result<ModelFactory> hourly_model(const SiteConfig& site, const SiteModelParts& parts,
                                   const std::vector<Month>& months,
                                   const model::epc::Place& place) {
-  auto made = model::make_drivers(months, place.calendar, place.holidays, *site.building,
-                                  parts.loads, place.location, place.weather);
-  if (!made) return tl::unexpected(made.error());
-  if (parts.effects) count_days_from(*parts.effects->site->drivers, *made);
+  auto made = TRY(model::make_drivers(months, place.calendar, place.holidays, *site.building,
+                                      parts.loads, place.location, place.weather));
+  if (parts.effects) count_days_from(*parts.effects->site->drivers, made);
   // Peaks are means over the meters' interval, so the model's steps must not be longer.
   const int steps = site.interval < std::chrono::hours{1} ? 4 : 1;
-  return [parts, steps, drivers = std::make_shared<const model::Drivers>(std::move(*made))](
+  return [parts, steps, drivers = std::make_shared<const model::Drivers>(std::move(made))](
              const model::Building& building) -> std::unique_ptr<MonthlyModel> {
     const auto with = [=](Alterations alterations) -> std::unique_ptr<MonthlyModel> {
       return std::make_unique<HourlyModel>(

@@ -130,21 +130,17 @@ std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
 
 Result<void> ChosenParameters::add(std::string_view name, const model::Building& nominal,
                                    const std::optional<Prior>& prior) {
-  const auto definition = model::find_parameter(name);
-  if (!definition) return tl::unexpected(definition.error());
-  auto parameter = model::make_parameter(**definition, nominal, prior);
-  if (!parameter) return tl::unexpected(parameter.error());
-  definitions.push_back(*definition);
-  parameters.push_back(std::move(*parameter));
+  const auto definition = TRY(model::find_parameter(name));
+  auto parameter = TRY(model::make_parameter(*definition, nominal, prior));
+  definitions.push_back(definition);
+  parameters.push_back(std::move(parameter));
   return {};
 }
 
 Result<ChosenParameters> site_parameters(const SiteConfig& site) {
   ChosenParameters chosen;
   for (const ParameterConfig& config : site.model->parameters) {
-    if (auto added = chosen.add(config.name, *site.building, config.prior); !added) {
-      return tl::unexpected(added.error());
-    }
+    TRY(chosen.add(config.name, *site.building, config.prior));
   }
   return chosen;
 }
@@ -188,7 +184,7 @@ Result<std::vector<model::MeterMap>> meter_maps(const SiteConfig& site) {
       return failure(map.error().code, fmt::format("meter '{}': {}", id, map.error().message));
     maps.push_back(*map);
   }
-  if (auto once = require_once(site, maps); !once) return tl::unexpected(once.error());
+  TRY(require_once(site, maps));
   return maps;
 }
 
