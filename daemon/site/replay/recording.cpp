@@ -93,9 +93,8 @@ Result<void> read_group(const SiteConfig& site, const FileGroup& group,
   csv::ReadingIntake intake{reader.options(), sink};
   for (const std::filesystem::path& file : group.files) {
     if (auto read = reader.read(file, intake); !read) return read;
-    auto said = intake.end_file(file.string());
-    if (!said) return tl::unexpected(said.error());
-    recording.files.push_back({file, std::move(said->issues), std::move(said->others)});
+    auto said = TRY(intake.end_file(file.string()));
+    recording.files.push_back({file, std::move(said.issues), std::move(said.others)});
   }
   csv::ReadingsReport report = intake.finish();
   recording.files.back().issues.append(std::move(report.issues));
@@ -316,9 +315,8 @@ Result<void> add_sums(const std::vector<Sum>& sums, const SiteConfig& site,
                       const Recording& recording, metering::MonthCloser& closer,
                       const std::function<void(std::size_t, const metering::Reading&)>& take) {
   for (const Sum& sum : sums) {
-    const auto grid = sum.grid(site, recording);
-    if (!grid) return tl::unexpected(grid.error());
-    closer.set_grid(static_cast<std::uint32_t>(sum.meter()), grid->interval, grid->phase);
+    const auto grid = TRY(sum.grid(site, recording));
+    closer.set_grid(static_cast<std::uint32_t>(sum.meter()), grid.interval, grid.phase);
     sum.hand_out([&](const metering::Reading& reading) { take(sum.meter(), reading); });
   }
   return {};
@@ -388,11 +386,10 @@ Result<std::vector<metering::MonthlyFigure>> months_of_sum(const SiteConfig& sit
       calendar, {site.meters[meter].meter}, site.closing, [&](ClosedMonth&& closed) {
         latest[closed.figure.month] = std::move(closed.figure);
       }};
-  const auto read = for_each_stored(site, meter, kAllTime, live, [&](metering::Reading reading) {
+  TRY(for_each_stored(site, meter, kAllTime, live, [&](metering::Reading reading) {
     reading.meter = 0;
     closer.add(reading);
-  });
-  if (!read) return tl::unexpected(read.error());
+  }));
   closer.finish();
   std::vector<metering::MonthlyFigure> figures;
   for (auto& [month, figure] : latest) figures.push_back(std::move(figure));
@@ -454,21 +451,16 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
                                        for (Sum& sum : sums)
                                          sum.take(indices[reading.meter], reading);
                                      }};
-    if (auto read = read_group(site, group, calendar, sink, recording); !read) {
-      return tl::unexpected(read.error());
-    }
+    TRY(read_group(site, group, calendar, sink, recording));
   }
-  if (auto whole = require_rows(site, recording); !whole) return tl::unexpected(whole.error());
+  TRY(require_rows(site, recording));
   for (std::size_t i = 0; i < site.meters.size(); ++i) {
     if (live == nullptr || !site.comes_from_store(site.meters[i])) continue;
-    const auto count = for_each_stored(site, i, kAllTime, *live,
-                                       [&](const metering::Reading& reading) { take(i, reading); });
-    if (!count) return tl::unexpected(count.error());
-    recording.readings += *count;
+    const auto count = TRY(for_each_stored(
+        site, i, kAllTime, *live, [&](const metering::Reading& reading) { take(i, reading); }));
+    recording.readings += count;
   }
-  if (auto added = add_sums(sums, site, recording, closer, take); !added) {
-    return tl::unexpected(added.error());
-  }
+  TRY(add_sums(sums, site, recording, closer, take));
   // A meter that was added today has no readings yet; the others must still be read.
   if (live != nullptr && recording.readings == 0) {
     return failure(ErrorCode::not_enough_data,
@@ -489,23 +481,18 @@ Result<void> take_closed_months(const SiteConfig& site, const metering::LocalCal
     if (!site.comes_from_store(config)) continue;
     MeterRecord& record = recording.meters[i];
     if (config.source == MeterSource::sum) {
-      auto figures = months_of_sum(site, i, calendar, live);
-      if (!figures) return tl::unexpected(figures.error());
-      record.figures = std::move(*figures);
+      record.figures = TRY(months_of_sum(site, i, calendar, live));
       find_changes(record);
       continue;
     }
-    auto figures = live.months(config);
-    if (!figures) return tl::unexpected(figures.error());
-    record.figures = std::move(*figures);
+    record.figures = TRY(live.months(config));
     find_changes(record);
-    const auto waiting = live.waiting_months(config);
-    if (!waiting) return tl::unexpected(waiting.error());
-    if (*waiting == 0) continue;
+    const auto waiting = TRY(live.waiting_months(config));
+    if (waiting == 0) continue;
     recording.notes.push_back(fmt::format(
         "{} closed month{} of '{}' {} to be closed anew, after late readings or a change of the "
         "rules; until `recald run` has done so, the figures are those from before.",
-        *waiting, *waiting == 1 ? "" : "s", config.meter.id, *waiting == 1 ? "waits" : "wait"));
+        waiting, waiting == 1 ? "" : "s", config.meter.id, waiting == 1 ? "waits" : "wait"));
   }
   return {};
 }
@@ -527,12 +514,11 @@ Result<void> take_hours(const SiteConfig& site, const metering::LocalCalendar& c
                                    if (month < months.first || months.last < month) return;
                                    slots.take(closed, record);
                                  }};
-    const auto count = for_each_stored(site, i, span, live, [&](metering::Reading reading) {
+    const auto count = TRY(for_each_stored(site, i, span, live, [&](metering::Reading reading) {
       reading.meter = 0;
       closer.add(reading);
-    });
-    if (!count) return tl::unexpected(count.error());
-    recording.readings += *count;
+    }));
+    recording.readings += count;
     closer.finish();
     record.counts = closer.counts(0);
     std::ranges::copy_if(record.figures, std::back_inserter(figures), [&](const auto& figure) {

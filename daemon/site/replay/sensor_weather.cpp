@@ -47,12 +47,11 @@ Result<std::vector<SensorValue>> read_values(const MeterConfig& sensor,
                                              const metering::TimeSpan& span, LiveReadings& live) {
   std::vector<SensorValue> values;
   const MeterConfig stored = as_stored(sensor, channel);
-  const auto count = live.for_each(stored, span, [&](const metering::Reading& reading) {
+  TRY(live.for_each(stored, span, [&](const metering::Reading& reading) {
     if (reading.validity == metering::Validity::ok && std::isfinite(reading.mean_kW)) {
       values.push_back({reading.start, reading.mean_kW});
     }
-  });
-  if (!count) return tl::unexpected(count.error());
+  }));
   return values;
 }
 
@@ -60,10 +59,9 @@ Result<std::vector<SensorValue>> read_values(const MeterConfig& sensor,
 Result<void> take_beginnings(const MeterConfig& sensor, LiveReadings& live,
                              weather::WeatherSource& source) {
   for (const WeatherChannel& channel : channels_of(sensor)) {
-    const auto begun = live.first_start(as_stored(sensor, channel));
-    if (!begun) return tl::unexpected(begun.error());
+    const auto begun = TRY(live.first_start(as_stored(sensor, channel)));
     for (std::size_t v = 0; v < source.begun.size(); ++v) {
-      if (is_of(channel, v)) source.begun[v] = *begun;
+      if (is_of(channel, v)) source.begun[v] = begun;
     }
   }
   return {};
@@ -104,9 +102,8 @@ Result<std::vector<std::size_t>> never_measured(const weather::WeatherSeries& me
   for (const MeterConfig& sensor : site.sensors) {
     if (live == nullptr) break;
     for (const WeatherChannel& channel : channels_of(sensor)) {
-      const auto begun = live->first_start(as_stored(sensor, channel));
-      if (!begun) return tl::unexpected(begun.error());
-      if (*begun) std::erase_if(lacking, [&](std::size_t v) { return is_of(channel, v); });
+      const auto begun = TRY(live->first_start(as_stored(sensor, channel)));
+      if (begun) std::erase_if(lacking, [&](std::size_t v) { return is_of(channel, v); });
     }
   }
   return lacking;
@@ -119,17 +116,15 @@ Result<bool> is_silent_in(const weather::WeatherHole& hole, const MeterConfig& s
   for (const WeatherChannel& channel : channels_of(sensor)) {
     if (!is_of(channel, hole.variable)) continue;
     const MeterConfig stored = as_stored(sensor, channel);
-    const auto begun = live.first_start(stored);
-    if (!begun) return tl::unexpected(begun.error());
-    if (!*begun || **begun >= hole.span.begin) return false;
+    const auto begun = TRY(live.first_start(stored));
+    if (!begun || *begun >= hole.span.begin) return false;
     // A hole begins and ends on the hour, and the sensor may have values for up to
     // half of that hour.
     const metering::TimeSpan inner{hole.span.begin + hours{1}, hole.span.end - hours{1}};
     bool is_silent = true;
-    const auto count = live.for_each(stored, inner, [&](const metering::Reading& reading) {
+    TRY(live.for_each(stored, inner, [&](const metering::Reading& reading) {
       is_silent = is_silent && reading.validity == metering::Validity::missing;
-    });
-    if (!count) return tl::unexpected(count.error());
+    }));
     return is_silent;
   }
   return false;
@@ -141,9 +136,8 @@ Result<std::string> reason_of(const weather::WeatherHole& hole, const SiteConfig
   std::vector<MeterConfig> silent;
   for (const MeterConfig& sensor : site.sensors) {
     if (live == nullptr) break;
-    const auto is_silent = is_silent_in(hole, sensor, *live);
-    if (!is_silent) return tl::unexpected(is_silent.error());
-    if (*is_silent) silent.push_back(sensor);
+    const auto is_silent = TRY(is_silent_in(hole, sensor, *live));
+    if (is_silent) silent.push_back(sensor);
   }
   const auto measures = [&](const MeterConfig& sensor) {
     return std::ranges::any_of(channels_of(sensor), [&](const WeatherChannel& channel) {
@@ -225,23 +219,20 @@ Result<SensorWeather> read_sensor(const MeterConfig& sensor, const metering::Tim
   }
   SensorWeather read;
   for (const WeatherChannel& channel : channels_of(sensor)) {
-    auto values = read_values(sensor, channel, span, live);
-    if (!values) return tl::unexpected(values.error());
+    auto values = TRY(read_values(sensor, channel, span, live));
     if (is_dry_bulb(*channel.quantity)) {
-      read.frozen_intervals += weather::forget_frozen(*values, interval);
+      read.frozen_intervals += weather::forget_frozen(values, interval);
     }
-    for (const SensorValue& one : *values) {
+    for (const SensorValue& one : values) {
       const auto slot = static_cast<std::size_t>((one.start - span.begin) / interval);
       if (!std::isfinite(one.value) || slot >= records.size()) continue;
       records[slot].values.*channel.quantity->member = within_bounds(*channel.quantity, one.value);
     }
   }
   const bool instants = sensor.values == weather::RecordedValues::instant;
-  auto series = weather::to_hourly(
+  read.series = TRY(weather::to_hourly(
       records, interval,
-      instants ? weather::ValuesStand::at_its_start : weather::ValuesStand::over_the_record);
-  if (!series) return tl::unexpected(series.error());
-  read.series = std::move(*series);
+      instants ? weather::ValuesStand::at_its_start : weather::ValuesStand::over_the_record));
   return read;
 }
 
@@ -257,37 +248,32 @@ Result<weather::WeatherSeries> merge_with_sensors(const SiteConfig& site,
   std::vector<std::string> names;  // one per source
   for (const MeterConfig& sensor : site.sensors) {
     if (live == nullptr) continue;
-    auto read = read_sensor(sensor, span, *live);
-    if (!read) return tl::unexpected(read.error());
+    auto read = TRY(read_sensor(sensor, span, *live));
     names.push_back("sensor '" + sensor.meter.id + "'");
-    if (read->frozen_intervals > 0) {
+    if (read.frozen_intervals > 0) {
       result.notes.push_back(
           fmt::format("Sensor '{}': {} intervals of a dry bulb that stood still are not used.",
-                      sensor.meter.id, read->frozen_intervals));
+                      sensor.meter.id, read.frozen_intervals));
     }
-    sensors.push_back(std::move(*read));
+    sensors.push_back(std::move(read));
   }
   std::vector<weather::WeatherSource> sources;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     sources.push_back({&sensors[i].series, true});
     if (!file || !file->is_typical_year) continue;
-    const auto taken = take_beginnings(site.sensors[i], *live, sources.back());
-    if (!taken) return tl::unexpected(taken.error());
+    TRY(take_beginnings(site.sensors[i], *live, sources.back()));
   }
   if (file) {
     sources.push_back({&file->series, false, file->is_typical_year});
     names.push_back(files_words(site.weather->files));
   }
   weather::MergedWeather merged = weather::merge_weather(span, sources);
-  auto lacking = never_measured(merged.series, file, site, live);
-  if (!lacking) return tl::unexpected(lacking.error());
-  result.assumed = std::move(*lacking);
+  result.assumed = TRY(never_measured(merged.series, file, site, live));
   for (Month month = months.first; month <= months.last; month = metering::next_month(month)) {
     const metering::TimeSpan of_month = calendar.month_span(month);
     result.from[month] = shares_of(merged, of_month, names);
-    auto silence = silence_of(merged.series, of_month, site, result, live);
-    if (!silence) return tl::unexpected(silence.error());
-    if (!silence->empty()) result.silence[month] = std::move(*silence);
+    auto silence = TRY(silence_of(merged.series, of_month, site, result, live));
+    if (!silence.empty()) result.silence[month] = std::move(silence);
   }
   result.notes.push_back(source_words(result.from));
   return std::move(merged.series);

@@ -27,21 +27,20 @@ Result<csv::WeatherCsv> read_csv(const WeatherConfig& config) {
 }
 
 Result<weather::WeatherSeries> read_csv(const WeatherConfig& config, SiteWeather& result) {
-  auto read = read_csv(config);
-  if (!read) return tl::unexpected(read.error());
-  result.values = read->values;
+  auto read = TRY(read_csv(config));
+  result.values = read.values;
   std::vector<std::string>& notes = result.notes;
-  if (read->issues.total > 0) {
+  if (read.issues.total > 0) {
     notes.push_back(fmt::format("Weather file: {} bad line{} kept out, the first at line {}: {}.",
-                                read->issues.total, read->issues.total == 1 ? "" : "s",
-                                read->issues.listed.front().line,
-                                read->issues.listed.front().reason));
+                                read.issues.total, read.issues.total == 1 ? "" : "s",
+                                read.issues.listed.front().line,
+                                read.issues.listed.front().reason));
   }
-  if (!read->ignored_columns.empty()) {
+  if (!read.ignored_columns.empty()) {
     notes.push_back(
-        fmt::format("Weather file: columns not used: {}.", fmt::join(read->ignored_columns, ", ")));
+        fmt::format("Weather file: columns not used: {}.", fmt::join(read.ignored_columns, ", ")));
   }
-  return std::move(read->series);
+  return std::move(read.series);
 }
 
 weather::ValuesTaken epw_values(const WeatherConfig& config) {
@@ -55,11 +54,10 @@ Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::
                                    SiteWeather& result) {
   result.values = epw_values(config);
   std::vector<std::string>& notes = result.notes;
-  const auto own = epw::read_epw(config.files.front(), {}, result.values.values);
-  if (!own) return tl::unexpected(own.error());
-  if (!own->typical) {
-    notes.insert(notes.end(), own->notes.begin(), own->notes.end());
-    return FileWeather{own->series};
+  const auto own = TRY(epw::read_epw(config.files.front(), {}, result.values.values));
+  if (!own.typical) {
+    notes.insert(notes.end(), own.notes.begin(), own.notes.end());
+    return FileWeather{own.series};
   }
   notes.push_back(
       "The weather is a typical year, not the weather of the measured months: misfit of single "
@@ -68,10 +66,9 @@ Result<FileWeather> read_epw_years(const WeatherConfig& config, const metering::
   // A year in local standard time ends within a day of the UTC year, so one more year on each side.
   for (int year = static_cast<int>(months.first.year()) - 1;
        year <= static_cast<int>(months.last.year()) + 1; ++year) {
-    const auto one = epw::read_epw(config.files.front(), year, result.values.values);
-    if (!one) return tl::unexpected(one.error());
-    if (all.hours.empty()) all.begin = one->series.begin;
-    all.hours.insert(all.hours.end(), one->series.hours.begin(), one->series.hours.end());
+    const auto one = TRY(epw::read_epw(config.files.front(), year, result.values.values));
+    if (all.hours.empty()) all.begin = one.series.begin;
+    all.hours.insert(all.hours.end(), one.series.hours.begin(), one.series.hours.end());
   }
   return FileWeather{std::move(all), true};
 }
@@ -81,16 +78,15 @@ Result<FileWeather> read_epw_list(const WeatherConfig& config, SiteWeather& resu
   result.values = epw_values(config);
   std::map<metering::Instant, std::pair<std::string, weather::WeatherSeries>> years;
   for (const std::filesystem::path& file : config.files) {
-    auto one = epw::read_epw(file, {}, result.values.values);
-    if (!one) return tl::unexpected(one.error());
+    auto one = TRY(epw::read_epw(file, {}, result.values.values));
     const std::string name = file.filename().string();
-    if (one->typical) {
+    if (one.typical) {
       return failure(ErrorCode::invalid_value,
                      fmt::format("{} is a typical year; only recorded years may be listed", name));
     }
-    result.notes.insert(result.notes.end(), one->notes.begin(), one->notes.end());
-    const metering::Instant begin = one->series.begin;
-    const auto added = years.try_emplace(begin, name, std::move(one->series));
+    result.notes.insert(result.notes.end(), one.notes.begin(), one.notes.end());
+    const metering::Instant begin = one.series.begin;
+    const auto added = years.try_emplace(begin, name, std::move(one.series));
     if (!added.second) {
       return failure(ErrorCode::invalid_value,
                      fmt::format("{} and {} are of the same year; list one of them",
@@ -115,9 +111,8 @@ Result<FileWeather> read_file(const WeatherConfig& config, const metering::Month
                               SiteWeather& result) {
   if (config.files.size() > 1) return read_epw_list(config, result);
   if (config.format == WeatherFormat::epw) return read_epw_years(config, months, result);
-  auto series = read_csv(config, result);
-  if (!series) return tl::unexpected(series.error());
-  return FileWeather{std::move(*series)};
+  auto series = TRY(read_csv(config, result));
+  return FileWeather{std::move(series)};
 }
 
 struct KnownShare {
@@ -216,21 +211,17 @@ Result<SiteWeather> read_all(const SiteConfig& site, const metering::LocalCalend
                              const metering::MonthRange& months, LiveReadings* live) {
   SiteWeather result;
   if (site.sensors.empty()) {
-    const auto file = read_file(*site.weather, months, result);
-    if (!file) return tl::unexpected(file.error());
-    result.assumed = weather::never_measured(file->series);
-    result.filled = weather::fill_gaps(file->series, calendar);
-    describe_file(site, calendar, months, file->series, result);
+    const auto file = TRY(read_file(*site.weather, months, result));
+    result.assumed = weather::never_measured(file.series);
+    result.filled = weather::fill_gaps(file.series, calendar);
+    describe_file(site, calendar, months, file.series, result);
   } else {
     std::optional<FileWeather> file;
     if (!site.weather->files.empty()) {
-      auto read = read_file(*site.weather, months, result);
-      if (!read) return tl::unexpected(read.error());
-      file = std::move(*read);
+      file = TRY(read_file(*site.weather, months, result));
     }
-    const auto series = merge_with_sensors(site, calendar, months, file, live, result);
-    if (!series) return tl::unexpected(series.error());
-    result.filled = weather::fill_gaps(*series, calendar);
+    const auto series = TRY(merge_with_sensors(site, calendar, months, file, live, result));
+    result.filled = weather::fill_gaps(series, calendar);
   }
   // A site without a location has no model, so nothing needs the missing variables.
   if (site.location && !result.assumed.empty()) {
@@ -266,9 +257,8 @@ Result<WeatherLack> lack_of_weather(const SiteConfig& site) {
   weather::WeatherSeries series;
   if (!config.files.empty()) {
     if (config.format == WeatherFormat::epw) return WeatherLack{};  // EPW files have all variables
-    auto read = read_csv(config);
-    if (!read) return tl::unexpected(read.error());
-    series = std::move(read->series);
+    auto read = TRY(read_csv(config));
+    series = std::move(read.series);
   }
   WeatherLack lack;
   if (!has_any(series, kDryBulb) && !is_measured(site, kDryBulb)) {
@@ -292,9 +282,8 @@ Result<std::vector<MonthWeather>> known_weather(const SiteConfig& site,
                                                 const metering::LocalCalendar& calendar,
                                                 const metering::MonthRange& months,
                                                 LiveReadings* live) {
-  const auto read = read_all(site, calendar, months, live);
-  if (!read) return tl::unexpected(read.error());
-  return known_weather(*read);
+  const auto read = TRY(read_all(site, calendar, months, live));
+  return known_weather(read);
 }
 
 std::vector<MonthWeather> known_weather(const SiteWeather& weather) {
@@ -307,9 +296,8 @@ std::vector<MonthWeather> known_weather(const SiteWeather& weather) {
 
 Result<weather::ValuesTaken> weather_values(const SiteConfig& site) {
   if (site.weather->format == WeatherFormat::epw) return epw_values(*site.weather);
-  const auto read = read_csv(*site.weather);
-  if (!read) return tl::unexpected(read.error());
-  return read->values;
+  const auto read = TRY(read_csv(*site.weather));
+  return read.values;
 }
 
 double weather_coverage(const SiteWeather& weather, metering::Month month) {

@@ -51,21 +51,18 @@ Result<std::unique_ptr<StoredReadings>> StoredReadings::open(const SiteConfig& s
                                "meters, `recald import` from files",
                                site.store.file.string(), site.file.filename().string()));
   }
-  auto store = stores::open_to_read(site.store.file);
-  if (!store) return tl::unexpected(store.error());
+  auto store = TRY(stores::open_to_read(site.store.file));
   return std::unique_ptr<StoredReadings>{
-      new StoredReadings{std::unique_ptr<Impl>{new Impl{std::move(*store), site.closing.closing}}}};
+      new StoredReadings{std::unique_ptr<Impl>{new Impl{std::move(store), site.closing.closing}}}};
 }
 
 Result<std::vector<metering::MonthlyFigure>> StoredReadings::months(const MeterConfig& meter) {
-  const auto number = impl_->store->find_meter(meter.meter.id);
-  if (!number) return tl::unexpected(number.error());
-  if (!*number) return std::vector<metering::MonthlyFigure>{};
-  auto stored = impl_->store->months(**number);
-  if (!stored) return tl::unexpected(stored.error());
+  const auto number = TRY(impl_->store->find_meter(meter.meter.id));
+  if (!number) return std::vector<metering::MonthlyFigure>{};
+  auto stored = TRY(impl_->store->months(*number));
   impl_->digest.add(meter.meter.id);
   std::vector<metering::MonthlyFigure> figures;
-  for (StoredMonth& month : *stored) {
+  for (StoredMonth& month : stored) {
     const metering::MonthlyFigure& figure = month.figure;
     impl_->digest.add(fmt::format("{} {} {}", metering::to_string(figure.month), figure.revision,
                                   figure.daily_average_kWh));
@@ -75,49 +72,40 @@ Result<std::vector<metering::MonthlyFigure>> StoredReadings::months(const MeterC
 }
 
 Result<int> StoredReadings::waiting_months(const MeterConfig& meter) {
-  const auto number = impl_->store->find_meter(meter.meter.id);
-  if (!number) return tl::unexpected(number.error());
-  if (!*number) return 0;
-  const auto rules = impl_->store->closing_rules(**number);
-  if (!rules) return tl::unexpected(rules.error());
-  if (*rules != metering::closing_rules(impl_->closing, meter.meter)) {
-    const auto all = impl_->store->months(**number);
-    if (!all) return tl::unexpected(all.error());
-    return static_cast<int>(all->size());
+  const auto number = TRY(impl_->store->find_meter(meter.meter.id));
+  if (!number) return 0;
+  const auto rules = TRY(impl_->store->closing_rules(*number));
+  if (rules != metering::closing_rules(impl_->closing, meter.meter)) {
+    const auto all = TRY(impl_->store->months(*number));
+    return static_cast<int>(all.size());
   }
-  const auto reopened = impl_->store->reopened();
-  if (!reopened) return tl::unexpected(reopened.error());
-  return static_cast<int>(std::ranges::count(*reopened, **number, &MeterMonth::meter));
+  const auto reopened = TRY(impl_->store->reopened());
+  return static_cast<int>(std::ranges::count(reopened, *number, &MeterMonth::meter));
 }
 
 Result<std::uint64_t> StoredReadings::for_each(const MeterConfig& meter,
                                                const metering::TimeSpan& span,
                                                const ReadingSink& sink) {
-  const auto number = impl_->store->find_meter(meter.meter.id);
-  if (!number) return tl::unexpected(number.error());
-  if (!*number) return std::uint64_t{0};
+  const auto number = TRY(impl_->store->find_meter(meter.meter.id));
+  if (!number) return std::uint64_t{0};
   impl_->digest.add(meter.meter.id);
   std::uint64_t count = 0;
-  const auto read =
-      impl_->store->for_each_interval(**number, span, [&](const StoredInterval& stored) {
-        add_to(impl_->digest, stored.reading);
-        sink(stored.reading);
-        ++count;
-      });
-  if (!read) return tl::unexpected(read.error());
+  TRY(impl_->store->for_each_interval(*number, span, [&](const StoredInterval& stored) {
+    add_to(impl_->digest, stored.reading);
+    sink(stored.reading);
+    ++count;
+  }));
   return count;
 }
 
 Result<std::optional<metering::Instant>> StoredReadings::first_start(const MeterConfig& meter) {
-  const auto number = impl_->store->find_meter(meter.meter.id);
-  if (!number) return tl::unexpected(number.error());
-  if (!*number) return std::optional<metering::Instant>{};
-  const auto extent = impl_->store->interval_extent(**number);
-  if (!extent) return tl::unexpected(extent.error());
-  if (!*extent) return std::optional<metering::Instant>{};
+  const auto number = TRY(impl_->store->find_meter(meter.meter.id));
+  if (!number) return std::optional<metering::Instant>{};
+  const auto extent = TRY(impl_->store->interval_extent(*number));
+  if (!extent) return std::optional<metering::Instant>{};
   impl_->digest.add(meter.meter.id);
-  impl_->digest.add(metering::to_string((*extent)->begin));
-  return std::optional{(*extent)->begin};
+  impl_->digest.add(metering::to_string(extent->begin));
+  return std::optional{extent->begin};
 }
 
 std::string StoredReadings::digest() { return impl_->digest.hex(); }

@@ -41,19 +41,16 @@ tl::unexpected<Error> about(const std::filesystem::path& file, const Error& erro
 }
 
 Result<std::string> first_bytes(const std::filesystem::path& file) {
-  const auto bytes = csv::open_file(file, "export");
-  if (!bytes) return tl::unexpected(bytes.error());
+  const auto bytes = TRY(csv::open_file(file, "export"));
   std::string begin(kFirstBytes, '\0');
-  const auto got = (*bytes)(begin.data(), begin.size());
-  if (!got) return tl::unexpected(got.error());
-  begin.resize(*got);
+  const auto got = TRY(bytes(begin.data(), begin.size()));
+  begin.resize(got);
   return begin;
 }
 
 Result<std::vector<std::string>> first_lines(const std::filesystem::path& file) {
-  auto bytes = csv::open_file(file, "export");
-  if (!bytes) return tl::unexpected(bytes.error());
-  csv::LineReader reader{table::as_utf8(std::move(*bytes))};
+  auto bytes = TRY(csv::open_file(file, "export"));
+  csv::LineReader reader{table::as_utf8(std::move(bytes))};
   std::vector<std::string> lines;
   for (csv::Line line{}; lines.size() < kSeparatorLines && reader.next(line);) {
     lines.emplace_back(line.text);
@@ -70,16 +67,15 @@ bool is_own(const std::vector<std::string>& lines) {
 
 Result<std::vector<table::KeptRow>> head_of(const std::filesystem::path& file,
                                             const table::TableShape& shape) {
-  const auto rows = table::open_rows(file, shape);
-  if (!rows) return tl::unexpected(rows.error());
+  const auto rows = TRY(table::open_rows(file, shape));
   std::vector<table::KeptRow> kept;
-  for (table::TableRow row; kept.size() < table::kSniffedRows && (*rows)->next(row);) {
+  for (table::TableRow row; kept.size() < table::kSniffedRows && rows->next(row);) {
     kept.push_back({row.number, {}});
     for (const std::string_view cell : row.cells) {
       kept.back().cells.push_back(table::utf8_of(cell));
     }
   }
-  if ((*rows)->error()) return tl::unexpected(*(*rows)->error());
+  if (rows->error()) return tl::unexpected(*rows->error());
   return kept;
 }
 
@@ -87,22 +83,19 @@ Result<table::TableGuess> guess_text(const std::filesystem::path& file,
                                      const std::vector<std::string>& lines) {
   table::TableShape shape;
   shape.separator = table::guess_separator(lines);
-  const auto head = head_of(file, shape);
-  if (!head) return tl::unexpected(head.error());
-  auto guess = table::guess_table(*head);
+  const auto head = TRY(head_of(file, shape));
+  auto guess = table::guess_table(head);
   if (guess) guess->shape.separator = shape.separator;
   return guess;
 }
 
 /// The first sheet that has a table.
 Result<table::TableGuess> guess_workbook(const std::filesystem::path& file) {
-  const auto names = table::sheet_names(file);
-  if (!names) return tl::unexpected(names.error());
+  const auto names = TRY(table::sheet_names(file));
   std::optional<Error> first;
-  for (const std::string& name : *names) {
-    const auto head = head_of(file, {.container = Container::xlsx, .sheet = name});
-    if (!head) return tl::unexpected(head.error());
-    auto guess = table::guess_table(*head);
+  for (const std::string& name : names) {
+    const auto head = TRY(head_of(file, {.container = Container::xlsx, .sheet = name}));
+    auto guess = table::guess_table(head);
     if (guess) {
       guess->shape.container = Container::xlsx;
       guess->shape.sheet = name;
@@ -148,8 +141,7 @@ std::vector<SurveyedMeter> meters_of_columns(const table::TableGuess& guess,
 Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& file,
                                                   const table::TableGuess& guess) {
   const table::TableShape& shape = guess.shape;
-  const auto rows = table::open_rows(file, shape);
-  if (!rows) return tl::unexpected(rows.error());
+  const auto rows = TRY(table::open_rows(file, shape));
   std::vector<SurveyedMeter> meters;
   std::map<std::string, std::size_t, std::less<>> known;
   std::vector<std::string> header;
@@ -157,7 +149,7 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
   std::optional<std::size_t> meter_at;
   std::optional<std::size_t> unit_at;
   std::optional<std::size_t> time_at;
-  for (table::TableRow row; (*rows)->next(row);) {
+  for (table::TableRow row; rows->next(row);) {
     if (!meter_at || !time_at) {
       header.clear();
       for (const std::string_view cell : row.cells) header.push_back(table::utf8_of(cell));
@@ -183,15 +175,14 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
                                has_unit ? table::utf8_of(row.cells[*unit_at]) : value.unit,
                                has_unit ? "as its rows say" : "as the header says"));
   }
-  if ((*rows)->error()) return tl::unexpected(*(*rows)->error());
+  if (rows->error()) return tl::unexpected(*rows->error());
   return meters;
 }
 
 Result<std::vector<SurveyedMeter>> meters_of_feed(const std::filesystem::path& file) {
-  const auto feed = table::read_green_button(file);
-  if (!feed) return tl::unexpected(feed.error());
+  const auto feed = TRY(table::read_green_button(file));
   std::vector<SurveyedMeter> meters;
-  for (const table::FeedMeter& in_feed : feed->meters) {
+  for (const table::FeedMeter& in_feed : feed.meters) {
     const std::string name = in_feed.title.empty()
                                  ? std::string{in_feed.is_reverse ? "delivered back" : ""}
                                  : in_feed.title;
@@ -261,10 +252,9 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
   }
   csv::ReadingIntake intake{table::intake_options(meters), sink};
   const std::filesystem::path& file = survey.files.front();
-  auto read = survey.table ? table::read_table(file, survey.table->shape, meters, calendar, intake,
-                                               &whole.clock)
-                           : csv::read_readings(file, table::intake_options(meters), intake);
-  if (!read) return tl::unexpected(read.error());
+  TRY(survey.table
+          ? table::read_table(file, survey.table->shape, meters, calendar, intake, &whole.clock)
+          : csv::read_readings(file, table::intake_options(meters), intake));
   whole.report = intake.finish();
   return whole;
 }
@@ -291,19 +281,16 @@ Result<void> try_fixed_clock(SurveyedExport& survey, const metering::LocalCalend
   const auto zone = first ? fixed_zone(calendar, *first) : std::nullopt;
   if (!zone) return {};
   survey.table->shape.timezone = *zone;
-  auto again = read_whole(survey, calendar);
-  if (!again) return tl::unexpected(again.error());
-  if (again->report.issues.total >= whole.report.issues.total) {
+  auto again = TRY(read_whole(survey, calendar));
+  if (again.report.issues.total >= whole.report.issues.total) {
     survey.table->shape.timezone.clear();
-    auto back = read_whole(survey, calendar);
-    if (!back) return tl::unexpected(back.error());
-    whole = std::move(*back);
+    whole = TRY(read_whole(survey, calendar));
     return {};
   }
   survey.clock_because =
       fmt::format("its clock stays on winter time: it has {} stamps that {} jumps over",
                   whole.clock.skipped, calendar.zone_name());
-  whole = std::move(*again);
+  whole = std::move(again);
   return {};
 }
 
@@ -465,9 +452,8 @@ Result<std::vector<SurveyedMeter>> meters_of_own(const std::filesystem::path& fi
 
 Result<SurveyedExport> described_export(const std::filesystem::path& file) {
   SurveyedExport survey{.files = {file}};
-  const auto begin = first_bytes(file);
-  if (!begin) return tl::unexpected(begin.error());
-  const auto container = table::guess_container(*begin);
+  const auto begin = TRY(first_bytes(file));
+  const auto container = table::guess_container(begin);
   if (!container) return about(file, container.error());
   if (*container == Container::green_button) {
     survey.table.emplace();
@@ -478,15 +464,14 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file) {
     survey.meters = std::move(*meters);
     return survey;
   }
-  const auto lines = first_lines(file);
-  if (!lines) return tl::unexpected(lines.error());
-  if (*container == Container::text && is_own(*lines)) {
+  const auto lines = TRY(first_lines(file));
+  if (*container == Container::text && is_own(lines)) {
     auto meters = meters_of_own(file);
     if (!meters) return about(file, meters.error());
     survey.meters = std::move(*meters);
     return survey;
   }
-  auto guess = *container == Container::xlsx ? guess_workbook(file) : guess_text(file, *lines);
+  auto guess = *container == Container::xlsx ? guess_workbook(file) : guess_text(file, lines);
   if (!guess) return about(file, guess.error());
   if (guess->shape.meter_column.empty()) {
     survey.meters = meters_of_columns(*guess, file.stem().string());
@@ -536,9 +521,7 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   }
   std::optional<metering::LocalCalendar> clock = calendar;
   if (!clock) {
-    auto utc = metering::LocalCalendar::open("Etc/UTC");
-    if (!utc) return tl::unexpected(utc.error());
-    clock = std::move(*utc);
+    clock = TRY(metering::LocalCalendar::open("Etc/UTC"));
     if (survey->table) survey->utc_offset = first_offset(file, *survey->table);
   }
   auto whole = read_whole(*survey, *clock);
@@ -548,7 +531,7 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
       return about(file, tried.error());
     }
   }
-  if (auto sound = require_sound(*survey, *whole); !sound) return tl::unexpected(sound.error());
+  TRY(require_sound(*survey, *whole));
   take_results(*survey, *whole, *clock);
   if (survey->meters.empty()) {
     return failure(ErrorCode::not_enough_data,

@@ -271,8 +271,7 @@ Result<int> climate_zone_of(const weather::WeatherSeries& weather) {
 }
 
 Result<std::string> starter_model(const StarterFacts& facts) {
-  const auto use = find_use(facts.use);
-  if (!use) return tl::unexpected(use.error());
+  const auto use = TRY(find_use(facts.use));
   if (!(facts.floor_area_m2 >= 10.0 && facts.floor_area_m2 <= 1e6)) {
     return failure(
         ErrorCode::invalid_value,
@@ -293,16 +292,16 @@ Result<std::string> starter_model(const StarterFacts& facts) {
   std::string text = fmt::format(
       "# A starter model: what is typical of {} {} in climate zone {} ({}).\n"
       "# Every line with \"guess\" is one: replace it by what you know, the largest first.\n",
-      article((*use)->name), (*use)->name, facts.climate_zone, envelope.typical_of);
+      article(use->name), use->name, facts.climate_zone, envelope.typical_of);
   text += period_of(facts.months);
-  text += model_of(facts, **use);
+  text += model_of(facts, *use);
   text += "\n[building]\n";
   text += line("floor_area_m2", number(facts.floor_area_m2), "as given");
   text += line("storeys", std::to_string(facts.storeys), "as given");
-  text += line("storey_height_m", number((*use)->storey_height_m), "guess, +-15 %");
-  text += surfaces(facts, **use, envelope);
-  text += use_of(**use);
-  text += systems_of(facts, **use, envelope);
+  text += line("storey_height_m", number(use->storey_height_m), "guess, +-15 %");
+  text += surfaces(facts, *use, envelope);
+  text += use_of(*use);
+  text += systems_of(facts, *use, envelope);
   return text;
 }
 

@@ -68,12 +68,11 @@ Result<std::string> with_starter(std::string text, const SiteConfig& drafted,
     return failure(ErrorCode::invalid_value,
                    "a starter model needs the weather: give --epw with a file of the place");
   }
-  const auto weather = epw::read_epw(request.epw);
-  if (!weather) return tl::unexpected(weather.error());
-  const epw::EpwLocation& place = weather->location;
+  const auto weather = TRY(epw::read_epw(request.epw));
+  const epw::EpwLocation& place = weather.location;
   const double site_h =
       std::chrono::duration<double, std::ratio<3600>>{
-          calendar.standard_offset(std::chrono::year{weather->year})}
+          calendar.standard_offset(std::chrono::year{weather.year})}
           .count();
   if (std::abs(place.utc_offset_h - site_h) > kOffsetsApart_h) {
     return failure(
@@ -91,23 +90,20 @@ Result<std::string> with_starter(std::string text, const SiteConfig& drafted,
   text.insert(end_of_site == std::string::npos ? text.size() : end_of_site, where);
   text += fmt::format("\n[weather]\nfile = {}{}\nformat = \"epw\"\n",
                       toml_text(relative_path(request.epw, folder)),
-                      weather->typical ? "   # a typical year: give the weather of the months that "
-                                         "were metered, or forecasts mean little"
-                                       : "");
+                      weather.typical ? "   # a typical year: give the weather of the months that "
+                                        "were metered, or forecasts mean little"
+                                      : "");
   if (request.use.empty()) return text;
-  const auto zone = climate_zone_of(weather->series);
-  if (!zone) return tl::unexpected(zone.error());
-  const auto months = shared_months(exports, calendar);
-  if (!months) return tl::unexpected(months.error());
-  const auto model = starter_model({.use = request.use,
-                                    .floor_area_m2 = request.floor_area_m2,
-                                    .storeys = request.storeys,
-                                    .built = request.built,
-                                    .climate_zone = *zone,
-                                    .months = *months,
-                                    .meters = modelled_meters(drafted)});
-  if (!model) return tl::unexpected(model.error());
-  return text + "\n" + *model;
+  const auto zone = TRY(climate_zone_of(weather.series));
+  const auto months = TRY(shared_months(exports, calendar));
+  const auto model = TRY(starter_model({.use = request.use,
+                                        .floor_area_m2 = request.floor_area_m2,
+                                        .storeys = request.storeys,
+                                        .built = request.built,
+                                        .climate_zone = zone,
+                                        .months = months,
+                                        .meters = modelled_meters(drafted)}));
+  return text + "\n" + model;
 }
 
 }  // namespace recald::daemon
