@@ -42,9 +42,8 @@ Result<diagnosis::MonthlyVote> energyplus_gap(const ModelledSite& on_runs,
                                               std::uint64_t seed) {
   const SiteConfig& site = on_runs.site.config;
   const auto prepared =
-      prepare_on_runs(site, on_runs.site.calendar, on_runs.recording, on_runs.weather);
-  if (!prepared) return tl::unexpected(prepared.error());
-  const std::vector<Parameter>& all = prepared->so_far.design->folder.parameters;
+      TRY(prepare_on_runs(site, on_runs.site.calendar, on_runs.recording, on_runs.weather));
+  const std::vector<Parameter>& all = prepared.so_far.design->folder.parameters;
   const EffectValues effects = values_of(added);
   const std::size_t own = all.size() - effects.found.size();
   std::vector<int> free;
@@ -56,25 +55,22 @@ Result<diagnosis::MonthlyVote> energyplus_gap(const ModelledSite& on_runs,
     neutral.push_back(is_effect ? effects.neutral[j - own] : all[j].prior.mean());
     found.push_back(is_effect ? effects.found[j - own] : all[j].prior.mean());
     const bool is_influential =
-        std::ranges::find(prepared->so_far.parameters, all[j].name, &Parameter::name) !=
-        prepared->so_far.parameters.end();
+        std::ranges::find(prepared.so_far.parameters, all[j].name, &Parameter::name) !=
+        prepared.so_far.parameters.end();
     if (is_effect || !is_influential) continue;
     free.push_back(static_cast<int>(j));
     fitted.push_back(all[j]);
   }
   const diagnosis::MonthlyFigures measured = held_figures(site, on_runs.recording, problem);
-  if (auto enough = diagnosis::require_enough(measured, fitted.size()); !enough) {
-    return tl::unexpected(enough.error());
-  }
+  TRY(diagnosis::require_enough(measured, fitted.size()));
   std::vector<std::string> months;
   for (const metering::Month month : problem.drivers->months) {
     months.push_back(metering::to_string(month));
   }
-  const auto made = model::metamodel::model_of(*prepared->so_far.design->fitted.monthly_form,
-                                               std::span<const std::string>{months});
-  if (!made) return tl::unexpected(made.error());
-  FixedParametersModel before{made->clone(), std::move(neutral), free};
-  FixedParametersModel after{made->clone(), std::move(found), free};
+  const auto made = TRY(model::metamodel::model_of(*prepared.so_far.design->fitted.monthly_form,
+                                                   std::span<const std::string>{months}));
+  FixedParametersModel before{made.clone(), std::move(neutral), free};
+  FixedParametersModel after{made.clone(), std::move(found), free};
   auto vote = diagnosis::monthly_vote(before, after, fitted, measured, seed);
   vote.gap.model = ModelKind::energyplus;
   return vote;

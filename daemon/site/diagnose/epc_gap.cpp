@@ -57,29 +57,23 @@ Result<diagnosis::MonthlyVote> epc_gap(const SiteConfig& as_configured,
   SiteConfig site = as_configured;
   site.model->kind = ModelKind::epc;
   const MonthlyFigures measured = held_figures(site, recording, problem);
-  auto chosen = site_parameters(site);
-  if (!chosen) return tl::unexpected(chosen.error());
-  if (auto enough = diagnosis::require_enough(measured, chosen->parameters.size()); !enough) {
-    return tl::unexpected(enough.error());
-  }
-  const auto maps = meter_maps(site);
-  if (!maps) return tl::unexpected(maps.error());
+  auto chosen = TRY(site_parameters(site));
+  TRY(diagnosis::require_enough(measured, chosen.parameters.size()));
+  const auto maps = TRY(meter_maps(site));
   const std::vector<Month>& months = problem.drivers->months;
   std::vector<Month> fitted;
   for (const std::size_t i : measured.fitted) fitted.push_back(months[i]);
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
   // Of the fitted months alone, or the months shown would tell their own electricity.
-  auto profile = fit_site_profile(site, recording, place, fitted);
-  if (!profile) return tl::unexpected(profile.error());
-  profile->loads.month_factor.fill(1.0);
+  auto profile = TRY(fit_site_profile(site, recording, place, fitted));
+  profile.loads.month_factor.fill(1.0);
   const auto make =
-      model_of(site, {chosen->definitions, *maps, profile->loads, {}, {}}, months, place);
-  if (!make) return tl::unexpected(make.error());
+      TRY(model_of(site, {chosen.definitions, maps, profile.loads, {}, {}}, months, place));
 
-  const auto plain = (*make)(*site.building);
+  const auto plain = make(*site.building);
   auto altered =
-      with_effects((*make)(*site.building), at_modes(problem, added, chosen->parameters), added);
-  auto vote = diagnosis::monthly_vote(*plain, altered, chosen->parameters, measured, seed);
+      with_effects(make(*site.building), at_modes(problem, added, chosen.parameters), added);
+  auto vote = diagnosis::monthly_vote(*plain, altered, chosen.parameters, measured, seed);
   vote.gap.model = ModelKind::epc;
   return vote;
 }

@@ -120,9 +120,7 @@ Result<Eigen::ArrayXXd> read_footprint(const std::filesystem::path& file, const 
                                        const diagnosis::SiteProblem& site) {
   const csv::ReadingsOptions options = file_options(config, site);
   const std::string name = file.filename().string();
-  if (auto apart = require_names_apart(options, name); !apart) {
-    return tl::unexpected(apart.error());
-  }
+  TRY(require_names_apart(options, name));
   FootprintHours hours(site);
   std::vector<seconds> intervals(options.meters.size());
   std::optional<metering::Reading> blank;
@@ -141,18 +139,15 @@ Result<Eigen::ArrayXXd> read_footprint(const std::filesystem::path& file, const 
                                      hours.add(reading.meter, reading.start,
                                                intervals[reading.meter], reading.mean_kW);
                                    }};
-  const auto report = csv::read_readings(file, options, sink);
-  if (!report) return tl::unexpected(report.error());
-  if (auto fine = check(*report, options, name); !fine) return tl::unexpected(fine.error());
+  const auto report = TRY(csv::read_readings(file, options, sink));
+  TRY(check(report, options, name));
   if (blank) {
     return failure(
         ErrorCode::malformed,
         fmt::format("{}: meter '{}' has no value at {}; write 0 where nothing changes", name,
                     options.meters[blank->meter].name, metering::to_string(blank->start)));
   }
-  if (auto whole = require_whole_hours(hours, site, options, name); !whole) {
-    return tl::unexpected(whole.error());
-  }
+  TRY(require_whole_hours(hours, site, options, name));
   if (!hours.meets_site()) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("{} tells of no hour within the months of the site's [period] that "

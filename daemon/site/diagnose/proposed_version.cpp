@@ -14,9 +14,8 @@ Result<diagnosis::ModelVersion> propose_version(const models::ModelStore& store,
                                                 const diagnosis::SiteProblem& problem,
                                                 const std::string& at,
                                                 diagnosis::VersionAuthor author) {
-  const auto parent = store.load(diagnosis::kBaseVersion);
-  if (!parent) return tl::unexpected(parent.error());
-  return store.save(diagnosis::next_version(diagnosis, problem, *parent,
+  const auto parent = TRY(store.load(diagnosis::kBaseVersion));
+  return store.save(diagnosis::next_version(diagnosis, problem, parent,
                                             {.data_revision = modelled.facts.data_revision,
                                              .catalogue_version = modelled.facts.recald_version,
                                              .created_at = at,

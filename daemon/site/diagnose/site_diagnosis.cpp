@@ -14,15 +14,14 @@ namespace {
 
 /// A diagnosis starts from the drawings.
 Result<void> require_drawings(const SiteConfig& site) {
-  const auto present = active_version(site);
-  if (!present) return tl::unexpected(present.error());
-  if (present->effects.empty()) return {};
+  const auto present = TRY(active_version(site));
+  if (present.effects.empty()) return {};
   std::vector<std::string> titles;
-  for (const auto& effect : present->effects) titles.push_back("'" + effect.title + "'");
+  for (const auto& effect : present.effects) titles.push_back("'" + effect.title + "'");
   return failure(ErrorCode::unsupported,
                  fmt::format("the model already has {} (version {}), but a diagnosis starts from "
                              "the drawings; first run `recald model revert {} {}`",
-                             fmt::join(titles, ", "), diagnosis::short_version(present->version),
+                             fmt::join(titles, ", "), diagnosis::short_version(present.version),
                              site.file.string(), diagnosis::kBaseVersion));
 }
 
@@ -44,10 +43,8 @@ void ask_monthly_model(const ModelledSite& modelled, const diagnosis::SiteProble
 
 Result<diagnosis::SiteProblem> prepare_diagnosis(const ModelledSite& modelled) {
   const SiteConfig& config = modelled.site.config;
-  if (auto plain = require_drawings(config); !plain) return tl::unexpected(plain.error());
-  if (auto enough = require_months(config, modelled.recording, modelled.weather); !enough) {
-    return tl::unexpected(enough.error());
-  }
+  TRY(require_drawings(config));
+  TRY(require_months(config, modelled.recording, modelled.weather));
   return make_site_problem(config, modelled.site.calendar, modelled.recording, modelled.weather);
 }
 
@@ -55,11 +52,10 @@ Result<SiteDiagnosis> diagnose_site(const ModelledSite& modelled,
                                     const diagnosis::SiteProblem& problem,
                                     const diagnosis::DiagnoseOptions& options,
                                     const diagnosis::Observer& observer) {
-  auto diagnosis = diagnosis::diagnose(problem, options, observer);
-  if (!diagnosis) return tl::unexpected(diagnosis.error());
+  auto diagnosis = TRY(diagnosis::diagnose(problem, options, observer));
   const auto data = data_warnings(modelled.site.config, modelled.recording, modelled.weather);
-  diagnosis->warnings.insert(diagnosis->warnings.begin(), data.begin(), data.end());
-  SiteDiagnosis done{std::move(*diagnosis), {}};
+  diagnosis.warnings.insert(diagnosis.warnings.begin(), data.begin(), data.end());
+  SiteDiagnosis done{std::move(diagnosis), {}};
   ask_monthly_model(modelled, problem, done);
   return done;
 }

@@ -124,21 +124,19 @@ Result<PeriodConfig> followed_period(const OpenSite& site, const Recording& reco
 Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& options,
                               const std::vector<diagnosis::AddedEffect>& added,
                               const calibration::RunContext& context) {
-  auto prepared = prepare_site(modelled.site.config, modelled.site.calendar, modelled.recording,
-                               modelled.weather, added);
-  if (!prepared) return tl::unexpected(prepared.error());
+  auto prepared = TRY(prepare_site(modelled.site.config, modelled.site.calendar, modelled.recording,
+                                   modelled.weather, added));
   auto design =
-      calibration::run_design(*prepared->model, prepared->problem, options.design_runs, context);
-  if (!design) return tl::unexpected(design.error());
-  assessment::set_aside_unresponsive(*design, prepared->so_far, prepared->problem);
+      TRY(calibration::run_design(*prepared.model, prepared.problem, options.design_runs, context));
+  assessment::set_aside_unresponsive(design, prepared.so_far, prepared.problem);
   // Outputs that no parameter moves are followed by their own level, even if all are such.
   const bool is_calibrated =
-      std::ranges::any_of(prepared->so_far.outputs, &assessment::OutputCalibration::calibrated);
-  if (auto ok = check_problem(prepared->problem, *prepared->model); is_calibrated && !ok) {
+      std::ranges::any_of(prepared.so_far.outputs, &assessment::OutputCalibration::calibrated);
+  if (auto ok = check_problem(prepared.problem, *prepared.model); is_calibrated && !ok) {
     return tl::unexpected(ok.error());
   }
-  const int learning_months = prepared->model->month_count();
-  SiteCalibration& so_far = prepared->so_far;
+  const int learning_months = prepared.model->month_count();
+  SiteCalibration& so_far = prepared.so_far;
   drift::SeenBeside beside{.meter_changes = meter_changes_of(
                                modelled.recording, so_far.month_names.front(), learning_months),
                            .directions = {},
@@ -150,15 +148,15 @@ Result<SiteDrift> follow_site(const ModelledSite& modelled, const DriftOptions& 
     }
     beside.ask_hours = ask_hours_of(modelled, so_far.month_names, std::move(meters), added);
   }
-  if (!prepared->electricity_use.empty()) {
-    beside.directions.push_back({.name = "electricity use", .change = prepared->electricity_use});
+  if (!prepared.electricity_use.empty()) {
+    beside.directions.push_back({.name = "electricity use", .change = prepared.electricity_use});
   }
   auto drift = drift::follow({so_far,
-                              *prepared->whole_model,
+                              *prepared.whole_model,
                               learning_months,
-                              {prepared->inputs.names, prepared->inputs.values},
-                              prepared->common_errors},
-                             prepared->problem, *design, std::move(beside), options, context);
+                              {prepared.inputs.names, prepared.inputs.values},
+                              prepared.common_errors},
+                             prepared.problem, design, std::move(beside), options, context);
   if (!drift) return drift;
   drift->currency = modelled.site.config.tariff.currency;
   for (drift::FollowedOutput& output : drift->outputs) {
