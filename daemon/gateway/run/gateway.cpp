@@ -67,8 +67,7 @@ Gateway::Gateway(const metering::LocalCalendar& calendar, const SiteConfig& site
             note_committed(batch, counts);
           },
           [this](const std::string& why) { tell_of_refusal(why); }),
-      keeper_(ports_.store, calendar, site.closing, ports_.time_zone_release),
-      self_(std::make_shared<Gateway*>(this)) {}
+      keeper_(ports_.store, calendar, site.closing, ports_.time_zone_release) {}
 
 Gateway::~Gateway() = default;
 
@@ -76,13 +75,9 @@ Result<std::unique_ptr<Gateway>> Gateway::open(const SiteConfig& site,
                                                const metering::LocalCalendar& calendar,
                                                const GatewayPorts& ports, OnMonth on_month) {
   std::unique_ptr<Gateway> gateway{new Gateway{calendar, site, ports, std::move(on_month)}};
-  auto buses = gateway->open_buses(site, {});
-  if (!buses) return tl::unexpected(buses.error());
-  gateway->buses_ = std::move(*buses);
-  auto told = gateway->open_told(site);
-  if (!told) return tl::unexpected(told.error());
-  gateway->told_ = std::move(*told);
-  if (auto opened = gateway->open_pushed(site); !opened) return tl::unexpected(opened.error());
+  gateway->buses_ = TRY(gateway->open_buses(site, {}));
+  gateway->told_ = TRY(gateway->open_told(site));
+  TRY(gateway->open_pushed(site));
   gateway->watch_meters_of(site);
   gateway->watch_sensors_of(site);
   return gateway;
@@ -95,9 +90,8 @@ Result<std::vector<std::unique_ptr<LiveBus>>> Gateway::open_buses(
     const bool is_kept = std::ranges::any_of(
         kept, [&](const auto& known) { return known && known->config().name == bus.name; });
     if (is_kept) continue;
-    auto live = LiveBus::open(site, bus, calendar_, ports_.store);
-    if (!live) return tl::unexpected(live.error());
-    opened.push_back(std::move(*live));
+    auto live = TRY(LiveBus::open(site, bus, calendar_, ports_.store));
+    opened.push_back(std::move(live));
   }
   return opened;
 }
@@ -108,9 +102,8 @@ Result<std::vector<LiveMeter>> Gateway::open_told(const SiteConfig& site) {
   for (const MeterConfig& config : site.meters) {
     if (config.source != MeterSource::mqtt) continue;
     const LiveMeterConfig live{.map = config.mqtt->map, .poll = config.mqtt->every};
-    auto meter = open_live_meter(config, live, calendar_, ports_.store);
-    if (!meter) return tl::unexpected(meter.error());
-    opened.push_back(std::move(*meter));
+    auto meter = TRY(open_live_meter(config, live, calendar_, ports_.store));
+    opened.push_back(std::move(meter));
   }
   return opened;
 }
@@ -119,10 +112,9 @@ Result<void> Gateway::open_pushed(const SiteConfig& site) {
   std::vector<PushedMeter> opened;
   const auto open = [&](const metering::Meter& meter,
                         std::optional<WeatherChannel> channel) -> Result<void> {
-    auto progress = MeterProgress::open(meter, calendar_, ports_.store);
-    if (!progress) return tl::unexpected(progress.error());
-    progress->channel = std::move(channel);
-    opened.push_back(again_pushed(std::move(*progress)));
+    auto progress = TRY(MeterProgress::open(meter, calendar_, ports_.store));
+    progress.channel = std::move(channel);
+    opened.push_back(again_pushed(std::move(progress)));
     return {};
   };
   for (const MeterConfig& config : site.meters) {
@@ -194,24 +186,22 @@ Result<void> Gateway::take_over(Store& memory, const std::function<void()>& on_p
 }
 
 Result<void> Gateway::take_over_all(Store& memory, const std::function<void()>& on_progress) {
-  auto events = memory.events(kEventsTakenOver);
-  if (!events) return tl::unexpected(events.error());
-  std::ranges::reverse(*events);
-  committer_.add({.events = std::move(*events)});
+  auto events = TRY(memory.events(kEventsTakenOver));
+  std::ranges::reverse(events);
+  committer_.add({.events = std::move(events)});
   for (MeterProgress* const progress : all_progress()) {
     if (on_progress) on_progress();
-    const auto number = memory.find_meter(progress->stored.meter.id);
-    if (!number) return tl::unexpected(number.error());
-    if (!*number) continue;
+    const auto number = TRY(memory.find_meter(progress->stored.meter.id));
+    if (!number) continue;
     std::vector<metering::RegisterSample> samples;
     const auto read = memory.for_each_sample(
-        **number, "energy",
+        *number, "energy",
         [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
     if (!read) return read;
     LiveMeter* const meter = find_meter(progress->stored.number);
     const auto taken = meter != nullptr && !samples.empty()
                            ? take_over_samples(*meter, samples)
-                           : take_over_intervals(*progress, memory, **number);
+                           : take_over_intervals(*progress, memory, *number);
     if (!taken) return taken;
   }
   return committer_.flush();
@@ -271,13 +261,11 @@ LiveBus::Ports Gateway::ports_of(const LiveBus& bus) const {
 /// Each in its own step of the loop, because ending a bus waits for the read in progress.
 void Gateway::begin_buses_anew() {
   for (const auto& bus : buses_) {
-    ports_.loop.after(milliseconds{0}, [weak = std::weak_ptr{self_}, name = bus->config().name] {
-      const auto self = weak.lock();
-      if (!self) return;
-      for (const auto& live : (*self)->buses_) {
-        if (live->config().name == name) live->begin_anew((*self)->ports_of(*live));
+    ports_.loop.after(milliseconds{0}, alive_.guard([this, name = bus->config().name] {
+      for (const auto& live : buses_) {
+        if (live->config().name == name) live->begin_anew(ports_of(*live));
       }
-    });
+    }));
   }
 }
 
@@ -287,18 +275,16 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   const auto changed = std::stable_partition(
       buses_.begin(), buses_.end(), [&](const auto& bus) { return bus->is_described_by(site); });
   const std::span kept{buses_.begin(), changed};
-  auto opened = open_buses(site, kept);
-  if (!opened) return tl::unexpected(opened.error());
-  auto told = open_told(site);
-  if (!told) return tl::unexpected(told.error());
+  auto opened = TRY(open_buses(site, kept));
+  auto told = TRY(open_told(site));
   if (auto pushed = open_pushed(site); !pushed) return pushed;
-  told_ = std::move(*told);
+  told_ = std::move(told);
   for (LiveMeter& meter : told_) note_doubt(meter);
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
   begin_buses_anew();                   // those that are kept
   // Held reads were planned with the old descriptions, which may have changed.
   std::erase_if(held_, [&](const HeldRead& held) { return find_meter(held.meter) == nullptr; });
-  for (auto& bus : *opened) {
+  for (auto& bus : opened) {
     start(*bus);
     buses_.push_back(std::move(bus));
   }
@@ -306,9 +292,7 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   watch_sensors_of(site);
   keeper_.set_options(site.closing);
   // Changed rules close months again, but only after the reload has ended.
-  ports_.loop.post([weak = std::weak_ptr{self_}] {
-    if (const auto self = weak.lock()) (*self)->close_months();
-  });
+  ports_.loop.post(alive_.guard([this] { close_months(); }));
   return {};
 }
 
@@ -476,20 +460,16 @@ Result<CommitCounts> Gateway::commit_pushed(StoreBatch& batch,
                                             Instant now) {
   if (!correction) return ports_.store.commit(batch);
   CommitCounts counts;
-  const auto kept = ports_.store.as_one([&]() -> Result<void> {
-    const auto edit = ports_.store.add_edit({.time = now,
-                                             .author = correction->author,
-                                             .reason = correction->reason,
-                                             .file = "POST /api/v1/readings",
-                                             .sha256 = correction->sha256});
-    if (!edit) return tl::unexpected(edit.error());
-    batch.edit = *edit;
-    auto committed = ports_.store.commit(batch);
-    if (!committed) return tl::unexpected(committed.error());
-    counts = std::move(*committed);
-    return counts.taken > 0 ? Result<void>{} : ports_.store.remove_edit(*edit);
-  });
-  if (!kept) return tl::unexpected(kept.error());
+  TRY(ports_.store.as_one([&]() -> Result<void> {
+    const auto edit = TRY(ports_.store.add_edit({.time = now,
+                                                 .author = correction->author,
+                                                 .reason = correction->reason,
+                                                 .file = "POST /api/v1/readings",
+                                                 .sha256 = correction->sha256}));
+    batch.edit = edit;
+    counts = TRY(ports_.store.commit(batch));
+    return counts.taken > 0 ? Result<void>{} : ports_.store.remove_edit(edit);
+  }));
   return counts;
 }
 
@@ -573,9 +553,8 @@ void Gateway::close_months_of(std::vector<std::uint32_t> meters) {
   const bool has_more = meter != nullptr && close_months_of(*meter);
   if (!has_more) meters.pop_back();
   if (meters.empty()) return;
-  ports_.loop.post([weak = std::weak_ptr{self_}, meters = std::move(meters)]() mutable {
-    if (const auto self = weak.lock()) (*self)->close_months_of(std::move(meters));
-  });
+  ports_.loop.post(alive_.guard(
+      [this, meters = std::move(meters)]() mutable { close_months_of(std::move(meters)); }));
 }
 
 bool Gateway::close_months_of(const MeterProgress& meter) {
@@ -598,20 +577,16 @@ bool Gateway::close_months_of(const MeterProgress& meter) {
 
 void Gateway::close_months_every_hour() {
   close_months();
-  ports_.loop.after(kMonthsEvery, [weak = std::weak_ptr{self_}] {
-    const auto self = weak.lock();
-    if (!self) return;
+  ports_.loop.after(kMonthsEvery, alive_.guard([this] {
     // Not at the start: sensors that seem silent have not been asked yet.
-    (*self)->judge_sensors();
-    (*self)->close_months_every_hour();
-  });
+    judge_sensors();
+    close_months_every_hour();
+  }));
 }
 
 void Gateway::judge_meters_every_minute() {
   judge_meters();
-  ports_.loop.after(kMetersEvery, [weak = std::weak_ptr{self_}] {
-    if (const auto self = weak.lock()) (*self)->judge_meters_every_minute();
-  });
+  ports_.loop.after(kMetersEvery, alive_.guard([this] { judge_meters_every_minute(); }));
 }
 
 void Gateway::judge_meters() {

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/bus.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
@@ -196,7 +197,7 @@ class Gateway {
   std::optional<std::chrono::milliseconds> refusal_told_at_;  ///< By the monotonic clock.
   bool is_refusal_told_ = false;                              ///< It goes on.
   std::deque<HeldRead> held_;
-  std::shared_ptr<Gateway*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon

@@ -42,9 +42,8 @@ Result<JobOutcome> done_and_tidied(const DoJob& work, const StoredJob& job, JobW
 /// The newest accepted calibration that says something of the months; an accepted one may lack it.
 Result<std::optional<StoredJob>> last_followed(Store& store) {
   constexpr int kLookedAt = 24;
-  const auto jobs = store.jobs(JobKind::calibration, kLookedAt);
-  if (!jobs) return tl::unexpected(jobs.error());
-  for (const StoredJob& one : *jobs) {
+  const auto jobs = TRY(store.jobs(JobKind::calibration, kLookedAt));
+  for (const StoredJob& one : jobs) {
     if (one.state != JobState::done || !one.accepted) continue;
     auto job = store.job(one.number);
     if (!job) return job;
@@ -60,8 +59,7 @@ JobRunner::JobRunner(Ports ports, DoJob work, OnJob on_job, OnJobEvent on_event)
       work_(std::move(work)),
       on_job_(std::move(on_job)),
       on_event_(std::move(on_event)),
-      watch_(std::make_shared<JobWatch>()),
-      self_(std::make_shared<JobRunner*>(this)) {}
+      watch_(std::make_shared<JobWatch>()) {}
 
 JobRunner::~JobRunner() { watch_->stop(); }
 
@@ -82,10 +80,9 @@ void JobRunner::resume() {
 }
 
 Result<void> JobRunner::take_up_unfinished() {
-  auto unfinished = ports_.store.unfinished_jobs();
-  if (!unfinished) return tl::unexpected(unfinished.error());
+  auto unfinished = TRY(ports_.store.unfinished_jobs());
   std::set<JobKind> waiting;
-  for (StoredJob& job : *unfinished) {
+  for (StoredJob& job : unfinished) {
     if (job.state == JobState::running && job.tries >= kTriesMax) {
       job.message = fmt::format(
           "recald was killed {} times while the job ran, perhaps by the system because memory ran "
@@ -114,12 +111,11 @@ Result<void> JobRunner::end(StoredJob job, JobState state) {
 
 /// A job that is stored as ended says nothing more, so its events are stored in the same commit.
 Result<void> JobRunner::put_with_events(const StoredJob& job, bool has_named) {
-  const auto before = last_followed(ports_.store);
-  if (!before) return tl::unexpected(before.error());
-  const std::vector<StoreEvent> events = events_of(job, has_named, *before);
+  const auto before = TRY(last_followed(ports_.store));
+  const std::vector<StoreEvent> events = events_of(job, has_named, before);
   auto put = ports_.store.as_one([&]() -> Result<void> {
     if (const StoreBatch batch{.events = events}; !batch.empty()) {
-      if (const auto told = ports_.store.commit(batch); !told) return tl::unexpected(told.error());
+      TRY(ports_.store.commit(batch));
     }
     return ports_.store.put_job(job);
   });
@@ -128,12 +124,11 @@ Result<void> JobRunner::put_with_events(const StoredJob& job, bool has_named) {
 }
 
 Result<std::int64_t> JobRunner::ask(JobKind kind, const std::string& asked_by) {
-  const auto unfinished = ports_.store.unfinished_jobs();
-  if (!unfinished) return tl::unexpected(unfinished.error());
-  const auto same = std::ranges::find_if(*unfinished, [&](const StoredJob& job) {
+  const auto unfinished = TRY(ports_.store.unfinished_jobs());
+  const auto same = std::ranges::find_if(unfinished, [&](const StoredJob& job) {
     return job.kind == kind && job.state == JobState::waiting;
   });
-  if (same != unfinished->end()) return same->number;
+  if (same != unfinished.end()) return same->number;
   StoredJob job{.kind = kind, .asked_by = asked_by, .asked = ports_.loop.now().instant()};
   const auto number = ports_.store.add_job(job);
   if (!number) return number;
@@ -149,12 +144,11 @@ Result<void> JobRunner::cancel(std::int64_t number) {
     watch_->stop();
     return {};
   }
-  auto found = ports_.store.job(number);
-  if (!found) return tl::unexpected(found.error());
-  if (!*found || (*found)->state != JobState::waiting) {
+  auto found = TRY(ports_.store.job(number));
+  if (!found || found->state != JobState::waiting) {
     return failure(ErrorCode::not_found, fmt::format("no job {} is waiting or running", number));
   }
-  return end(std::move(**found), JobState::cancelled);
+  return end(std::move(*found), JobState::cancelled);
 }
 
 std::optional<JobProgress> JobRunner::progress() const {
@@ -183,9 +177,7 @@ void JobRunner::begin_next() {
   const auto outcome = std::make_shared<Result<JobOutcome>>();
   ports_.worker.run([work = work_, job = current_, outcome,
                      watch = watch_] { *outcome = done_and_tidied(work, job, *watch); },
-                    [weak = std::weak_ptr{self_}, outcome] {
-                      if (const auto self = weak.lock()) (*self)->finish(std::move(*outcome));
-                    });
+                    alive_.guard([this, outcome] { finish(std::move(*outcome)); }));
 }
 
 void JobRunner::finish(Result<JobOutcome> outcome) {
@@ -228,9 +220,7 @@ void JobRunner::keep() {
 }
 
 void JobRunner::try_later(void (JobRunner::*step)()) {
-  ports_.loop.after(kTryAgain, [weak = std::weak_ptr{self_}, step] {
-    if (const auto self = weak.lock()) ((*self)->*step)();
-  });
+  ports_.loop.after(kTryAgain, alive_.guard([this, step] { (this->*step)(); }));
 }
 
 }  // namespace recald::daemon

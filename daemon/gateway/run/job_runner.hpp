@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
@@ -103,7 +104,7 @@ class JobRunner {
   std::string next_asked_by_;
   bool cancelled_ = false;  ///< `current_` was cancelled.
   std::shared_ptr<JobWatch> watch_;
-  std::shared_ptr<JobRunner*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon

@@ -30,11 +30,10 @@ Result<std::unique_ptr<LiveBus>> LiveBus::open(const SiteConfig& site, const Bus
   const auto meters = meters_on(site, bus.name);
   live->meters_.reserve(meters.size());
   for (const MeterConfig* meter : meters) {
-    auto opened = meter->role == MeterRole::weather
-                      ? open_live_sensor(*meter, calendar, store)
-                      : open_live_meter(*meter, *meter->live, calendar, store);
-    if (!opened) return tl::unexpected(opened.error());
-    live->meters_.push_back(std::move(*opened));
+    auto opened = TRY(meter->role == MeterRole::weather
+                          ? open_live_sensor(*meter, calendar, store)
+                          : open_live_meter(*meter, *meter->live, calendar, store));
+    live->meters_.push_back(std::move(opened));
   }
   return live;
 }

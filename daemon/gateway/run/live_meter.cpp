@@ -12,10 +12,9 @@ namespace {
 /// with the state they led to, so if there are samples, the state was lost.
 Result<std::string> lost_state(Store& store, std::uint32_t meter, const std::string& field) {
   std::string lost;
-  const auto read = store.for_each_sample(meter, field, [&](const metering::RegisterSample&) {
+  TRY(store.for_each_sample(meter, field, [&](const metering::RegisterSample&) {
     lost = "the state of its counter is no longer in the store";
-  });
-  if (!read) return tl::unexpected(read.error());
+  }));
   return lost;
 }
 
@@ -56,16 +55,13 @@ std::vector<RefusedRegisters> LiveMeter::refused() const {
 
 Result<LiveMeter> open_live_meter(const MeterConfig& config, const LiveMeterConfig& live,
                                   const metering::LocalCalendar& calendar, Store& store) {
-  auto reads = planned_reads(config, live.map);
-  if (!reads) return tl::unexpected(reads.error());
+  auto reads = TRY(planned_reads(config, live.map));
   std::vector<metering::Reading> recent;
-  auto progress = MeterProgress::open(config.meter, calendar, store,
-                                      [&](const metering::Reading& one) { recent.push_back(one); });
-  if (!progress) return tl::unexpected(progress.error());
-  const std::uint32_t number = progress->stored.number;
+  auto progress = TRY(MeterProgress::open(
+      config.meter, calendar, store, [&](const metering::Reading& one) { recent.push_back(one); }));
+  const std::uint32_t number = progress.stored.number;
   std::string doubt;
-  const auto states = stored_states(store, number, doubt);
-  if (!states) return tl::unexpected(states.error());
+  const auto states = TRY(stored_states(store, number, doubt));
 
   TrackedMeter tracked{
       .number = number,
@@ -77,32 +73,29 @@ Result<LiveMeter> open_live_meter(const MeterConfig& config, const LiveMeterConf
       .booking = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll}};
   // A map that lost its counter leaves the counter's state behind in the store.
   const std::string field = live.map.energy.empty() ? "power" : "energy";
-  const auto found = std::ranges::find(*states, field, &RegisterState::field);
+  const auto found = std::ranges::find(states, field, &RegisterState::field);
   const std::optional<RegisterState> state =
-      found == states->end() ? std::nullopt : std::optional{*found};
-  if (!state && doubt.empty() && progress->last_interval) {
-    auto lost = lost_state(store, number, field);
-    if (!lost) return tl::unexpected(lost.error());
-    doubt = std::move(*lost);
+      found == states.end() ? std::nullopt : std::optional{*found};
+  if (!state && doubt.empty() && progress.last_interval) {
+    doubt = TRY(lost_state(store, number, field));
   }
   MeterTrack track{std::move(tracked), calendar, state};
   for (const metering::Reading& one : recent) track.remember(one);
   std::vector<MeterProgress> own;
-  own.push_back(std::move(*progress));
+  own.push_back(std::move(progress));
   return LiveMeter{.id = config.meter.id,
                    .progress = std::move(own),
                    .config = live,
                    .text = config.text,
                    .track = std::move(track),
-                   .reads = std::move(*reads),
+                   .reads = std::move(reads),
                    .doubt = std::move(doubt)};
 }
 
 Result<LiveMeter> open_live_sensor(const MeterConfig& config,
                                    const metering::LocalCalendar& calendar, Store& store) {
   const LiveMeterConfig& live = *config.live;
-  auto reads = planned_reads(config, live.map);
-  if (!reads) return tl::unexpected(reads.error());
+  auto reads = TRY(planned_reads(config, live.map));
   TrackedSensor tracked{
       .id = config.meter.id,
       .map = live.map,
@@ -111,21 +104,19 @@ Result<LiveMeter> open_live_sensor(const MeterConfig& config,
   std::vector<MeterProgress> all;
   std::string doubt;
   for (WeatherChannel& channel : channels_of(config)) {
-    auto progress = MeterProgress::open(stored_meter(config, channel), calendar, store);
-    if (!progress) return tl::unexpected(progress.error());
-    const std::uint32_t number = progress->stored.number;
-    auto states = stored_states(store, number, doubt);
-    if (!states) return tl::unexpected(states.error());
-    tracked.quantities.push_back({number, channel.quantity, std::move(*states)});
-    progress->channel = std::move(channel);
-    all.push_back(std::move(*progress));
+    auto progress = TRY(MeterProgress::open(stored_meter(config, channel), calendar, store));
+    const std::uint32_t number = progress.stored.number;
+    auto states = TRY(stored_states(store, number, doubt));
+    tracked.quantities.push_back({number, channel.quantity, std::move(states)});
+    progress.channel = std::move(channel);
+    all.push_back(std::move(progress));
   }
   return LiveMeter{.id = config.meter.id,
                    .progress = std::move(all),
                    .config = live,
                    .text = config.text,
                    .track = WeatherTrack{std::move(tracked)},
-                   .reads = std::move(*reads),
+                   .reads = std::move(reads),
                    .doubt = std::move(doubt)};
 }
 

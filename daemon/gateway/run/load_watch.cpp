@@ -31,11 +31,7 @@ Result<std::vector<ExpectedMeter>> expect_safely(const ExpectLoads& expect,
 }  // namespace
 
 LoadWatch::LoadWatch(Loop& loop, Worker& worker, ExpectLoads expect, std::function<bool()> is_busy)
-    : loop_(loop),
-      worker_(worker),
-      expect_(std::move(expect)),
-      is_busy_(std::move(is_busy)),
-      self_(std::make_shared<LoadWatch*>(this)) {}
+    : loop_(loop), worker_(worker), expect_(std::move(expect)), is_busy_(std::move(is_busy)) {}
 
 void LoadWatch::start() { schedule(std::chrono::milliseconds{0}); }
 
@@ -49,10 +45,9 @@ void LoadWatch::set_expect(ExpectLoads expect) {
 void LoadWatch::schedule(std::chrono::milliseconds wait) {
   const std::chrono::milliseconds due = loop_.now().monotonic + wait;
   due_ = due;
-  loop_.after(wait, [weak = std::weak_ptr{self_}, due] {
-    const auto self = weak.lock();
-    if (self && (*self)->due_ == due) (*self)->ask();
-  });
+  loop_.after(wait, alive_.guard([this, due] {
+    if (due_ == due) ask();
+  }));
 }
 
 void LoadWatch::ask() {
@@ -64,12 +59,10 @@ void LoadWatch::ask() {
   // The work may outlive this object, so it has copies of everything it uses.
   const auto found = std::make_shared<Result<std::vector<ExpectedMeter>>>();
   worker_.run([expect = expect_, span, found] { *found = expect_safely(expect, span); },
-              [weak = std::weak_ptr{self_}, found, asked_for = site_files_] {
-                const auto self = weak.lock();
-                if (!self) return;
-                (*self)->is_asking_ = false;
-                if ((*self)->site_files_ == asked_for) (*self)->take(std::move(*found));
-              });
+              alive_.guard([this, found, asked_for = site_files_] {
+                is_asking_ = false;
+                if (site_files_ == asked_for) take(std::move(*found));
+              }));
 }
 
 void LoadWatch::take(Result<std::vector<ExpectedMeter>> expected) {
@@ -90,9 +83,7 @@ ExpectLoads make_load_expectation(SharedSite site) {
              const metering::TimeSpan& span) -> Result<std::vector<ExpectedMeter>> {
     if (!site->config.model || !site->config.building) return std::vector<ExpectedMeter>{};
     if (!learned->expectation || span.end - learned->at >= kLearnEvery) {
-      auto again = LoadExpectation::learn(*site, span.end);
-      if (!again) return tl::unexpected(again.error());
-      learned->expectation = std::move(*again);
+      learned->expectation = TRY(LoadExpectation::learn(*site, span.end));
       learned->at = span.end;
     }
     return learned->expectation->expect(span);

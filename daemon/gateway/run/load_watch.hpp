@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/worker.hpp"
 #include "core/result.hpp"
@@ -48,7 +49,7 @@ class LoadWatch {
   bool is_asking_ = false;
   int site_files_ = 0;  ///< So far: an answer for an earlier one is dropped.
   std::optional<std::chrono::milliseconds> due_;  ///< Monotonic.
-  std::shared_ptr<LoadWatch*> self_;
+  Alive alive_;
 };
 
 /// Learns from the site's closed months at the first call, and again every day.

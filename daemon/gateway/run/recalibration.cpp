@@ -21,12 +21,10 @@ Result<std::optional<metering::Month>> last_common_month(Store& store, const Sit
   for (const MeterConfig& config : site.meters) {
     if (std::ranges::find(meters, config.meter.id) == meters.end()) continue;
     if (!config.is_stored()) return std::nullopt;
-    const auto number = store.meter_number(config.meter.id, config.meter.interval);
-    if (!number) return tl::unexpected(number.error());
-    const auto months = store.months(*number);
-    if (!months) return tl::unexpected(months.error());
-    if (months->empty()) return std::nullopt;
-    const metering::Month last = months->back().figure.month;
+    const auto number = TRY(store.meter_number(config.meter.id, config.meter.interval));
+    const auto months = TRY(store.months(number));
+    if (months.empty()) return std::nullopt;
+    const metering::Month last = months.back().figure.month;
     common = common ? std::min(*common, last) : last;
   }
   return common;
@@ -41,8 +39,7 @@ Recalibration::Recalibration(Loop& loop, const SiteConfig& site, metering::Local
       modelled_meters_(site.model ? site.without_sums(site.model->outputs)
                                   : std::vector<std::string>{}),
       calendar_(std::move(calendar)),
-      ask_(std::move(ask)),
-      self_(std::make_shared<Recalibration*>(this)) {}
+      ask_(std::move(ask)) {}
 
 void Recalibration::start() {
   if (!schedule_.times) return;
@@ -51,13 +48,11 @@ void Recalibration::start() {
 
 Result<void> Recalibration::catch_up(Store& store, const SiteConfig& site) {
   if (!schedule_.when_a_month_closes) return {};
-  const auto month = last_common_month(store, site, modelled_meters_);
-  if (!month) return tl::unexpected(month.error());
-  if (!*month) return {};
-  const auto jobs = store.jobs(JobKind::calibration, 1);
-  if (!jobs) return tl::unexpected(jobs.error());
-  const auto closed = calendar_.month_span(**month).end + site.closing.watermark;
-  if (jobs->empty() || jobs->front().asked < closed) ask_("month");
+  const auto month = TRY(last_common_month(store, site, modelled_meters_));
+  if (!month) return {};
+  const auto jobs = TRY(store.jobs(JobKind::calibration, 1));
+  const auto closed = calendar_.month_span(*month).end + site.closing.watermark;
+  if (jobs.empty() || jobs.front().asked < closed) ask_("month");
   return {};
 }
 
@@ -68,21 +63,17 @@ void Recalibration::wait_for(metering::Instant next) {
     return ask_("schedule");
   }
   loop_.after(std::min(std::chrono::ceil<std::chrono::milliseconds>(left), kLookAgain),
-              [weak = std::weak_ptr{self_}, next] {
-                if (const auto self = weak.lock()) (*self)->wait_for(next);
-              });
+              alive_.guard([this, next] { wait_for(next); }));
 }
 
 void Recalibration::month_closed(const std::string& meter) {
   if (!schedule_.when_a_month_closes || is_asking_) return;
   if (std::ranges::find(modelled_meters_, meter) == modelled_meters_.end()) return;
   is_asking_ = true;
-  loop_.after(kTogether, [weak = std::weak_ptr{self_}] {
-    const auto self = weak.lock();
-    if (!self) return;
-    (*self)->is_asking_ = false;
-    (*self)->ask_("month");
-  });
+  loop_.after(kTogether, alive_.guard([this] {
+    is_asking_ = false;
+    ask_("month");
+  }));
 }
 
 }  // namespace recald::daemon

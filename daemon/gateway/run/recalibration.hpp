@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "daemon/site/config/site_config.hpp"
@@ -42,7 +43,7 @@ class Recalibration {
   metering::LocalCalendar calendar_;
   std::function<void(const std::string&)> ask_;
   bool is_asking_ = false;
-  std::shared_ptr<Recalibration*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon

@@ -29,9 +29,7 @@ Result<stores::CheckedStore> StoreOpener::try_to_open(const StoreConfig& config,
                                                       metering::Instant now,
                                                       const std::function<void()>& on_progress) {
   if (!lock_) {
-    auto lock = system::FileLock::take(config.file.string() + ".lock");
-    if (!lock) return tl::unexpected(lock.error());
-    lock_ = std::move(*lock);
+    lock_ = TRY(system::FileLock::take(config.file.string() + ".lock"));
   }
   return open_store(config, now, on_progress);
 }
@@ -68,9 +66,8 @@ Result<RunningStore> open_running_store(StoreOpener& opener, const StoreConfig& 
   const bool is_of_the_disk = opened.error().code == ErrorCode::io_failed &&
                               !std::filesystem::is_directory(config.file, ignored);
   if (!is_of_the_disk) return tl::unexpected(opened.error());
-  auto memory = stores::open_in_memory();
-  if (!memory) return tl::unexpected(memory.error());
-  return RunningStore{std::move(*memory), opened.error().message};
+  auto memory = TRY(stores::open_in_memory());
+  return RunningStore{std::move(memory), opened.error().message};
 }
 
 }  // namespace recald::daemon

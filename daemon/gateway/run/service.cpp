@@ -168,19 +168,15 @@ class Service {
   /// Serves HTTP and registers if the site is configured to.
   Result<void> listen() {
     if (const auto& modbus = site_.config.modbus) {
-      auto registers =
+      registers_ = TRY(
           modbus::RegisterServer::listen({.address = modbus->address, .port = modbus->port},
-                                         modbus::Words(static_cast<std::size_t>(kFirstMeterAt)));
-      if (!registers) return tl::unexpected(registers.error());
-      registers_ = std::move(*registers);
+                                         modbus::Words(static_cast<std::size_t>(kFirstMeterAt))));
       spdlog::info("event=listening_modbus address={} port={}", modbus->address,
                    registers_->port());
     }
     const auto& http = site_.config.http;
     if (!http) return {};
-    auto server = serve_site(context_, *http, served());
-    if (!server) return tl::unexpected(server.error());
-    server_ = std::move(*server);
+    server_ = TRY(serve_site(context_, *http, served()));
     spdlog::info("event=listening address={} port={}", http->address, server_->port());
     return {};
   }
@@ -352,9 +348,7 @@ class Service {
     if (auto possible = can_reload(site_.config, *config); !possible) return possible;
     std::string token;
     if (config->http && !config->http->token_file.empty()) {
-      auto read = http::read_token_file(config->http->token_file);
-      if (!read) return tl::unexpected(read.error());
-      token = std::move(*read);
+      token = TRY(http::read_token_file(config->http->token_file));
     }
     Result<http::Tls> tls;
     if (server_ && !config->http->certificate_file.empty()) {
@@ -390,9 +384,7 @@ class Service {
     if (!running_.missing.empty()) {
       return failure(ErrorCode::io_failed, "the store cannot be opened: " + running_.missing);
     }
-    if (auto modelled = require_model(site_.config); !modelled) {
-      return tl::unexpected(modelled.error());
-    }
+    TRY(require_model(site_.config));
     return jobs_.ask(kind, asked_by);
   }
 
@@ -476,17 +468,16 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
   save_memory();
   spdlog::set_default_logger(spdlog::stderr_logger_st("recald"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
-  auto signals = Signals::open();
-  if (!signals) return tl::unexpected(signals.error());
+  auto signals = TRY(Signals::open());
   StoreOpener opener;
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   auto store = open_running_store(opener, site.config.store, now, extend_start);
   if (!store) return tl::unexpected(store.error());
-  signals->hold_ends();
+  signals.hold_ends();
   Alerts::Told told;
   for (std::unique_ptr<Store> memory;;) {
     auto service = std::make_unique<Service>(std::move(site), options, std::move(*store), opener,
-                                             *signals, std::exchange(told, {}));
+                                             signals, std::exchange(told, {}));
     if (auto opened = service->open(memory.get()); !opened) {
       if (!memory) return opened;
       // The readings in memory exist nowhere else: continue with them, and try again later.

@@ -102,13 +102,10 @@ Result<JobOutcome> calibrate_metamodel(const ModelledSite& modelled,
                                        const std::filesystem::path& design,
                                        const std::filesystem::path& folder, metering::Instant now,
                                        const calibration::RunContext& context) {
-  const auto done = calibrate_on_metamodel(modelled, design, context);
-  if (!done) return tl::unexpected(done.error());
-  JobOutcome outcome = outcome_of(done->calibration, done->facts, modelled.site.config, folder);
-  const auto written =
-      write_calibration(*done, months_csv(modelled.recording, done->facts.time_zone_data),
-                        outcome.result.document, metering::to_string(now), folder);
-  if (!written) return tl::unexpected(written.error());
+  const auto done = TRY(calibrate_on_metamodel(modelled, design, context));
+  JobOutcome outcome = outcome_of(done.calibration, done.facts, modelled.site.config, folder);
+  TRY(write_calibration(done, months_csv(modelled.recording, done.facts.time_zone_data),
+                        outcome.result.document, metering::to_string(now), folder));
   return outcome;
 }
 
@@ -157,51 +154,43 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
                             const calibration::RunContext& context,
                             const std::filesystem::path& folder, JobOutcome& outcome) {
   const DriftOptions options{.sequential = {.particles = kDriftParticles}};
-  auto modelled = load_modelled_site(
+  auto modelled = TRY(load_modelled_site(
       std::move(site), now,
       [&](const OpenSite& open, const Recording& recording, metering::Instant until) {
         return followed_period(open, recording, until, options.learning_months);
-      });
-  if (!modelled) return tl::unexpected(modelled.error());
-  auto version = active_version(modelled->site.config);
-  if (!version) return tl::unexpected(version.error());
-  modelled->facts.model_version = version_name(*version, modelled->facts.model_version);
-  modelled->facts.seed = context.seed;
-  auto drift = follow_site(*modelled, options, version->effects, context);
-  if (!drift) return tl::unexpected(drift.error());
-  auto written = write_drift(modelled->site.config, *drift, modelled->facts,
-                             metering::to_string(now), drift_json(*drift, modelled->facts), folder);
-  if (!written) return tl::unexpected(written.error());
-  outcome.forecasts = forecasts_of(*drift, modelled->facts, now);
-  SiteConfig hourly = modelled->site.config;
+      }));
+  auto version = TRY(active_version(modelled.site.config));
+  modelled.facts.model_version = version_name(version, modelled.facts.model_version);
+  modelled.facts.seed = context.seed;
+  auto drift = TRY(follow_site(modelled, options, version.effects, context));
+  TRY(write_drift(modelled.site.config, drift, modelled.facts, metering::to_string(now),
+                  drift_json(drift, modelled.facts), folder));
+  outcome.forecasts = forecasts_of(drift, modelled.facts, now);
+  SiteConfig hourly = modelled.site.config;
   const bool can_be_diagnosed = choose_model(hourly, ModelKind::hourly).has_value();
   // A diagnosis starts from the drawings.
-  const bool is_of_drawings = version->effects.empty();
-  if (asks_for_a_name(*drift) && can_be_diagnosed && is_of_drawings) {
+  const bool is_of_drawings = version.effects.empty();
+  if (asks_for_a_name(drift) && can_be_diagnosed && is_of_drawings) {
     outcome.next = JobKind::diagnosis;
   }
-  return summary_of(*drift);
+  return summary_of(drift);
 }
 
 Result<JobOutcome> calibrate(const OpenSite& site, const CalibrateOptions& options,
                              const StoredJob& job, metering::Instant now, JobWatch& watch) {
   const auto folder = job_folder(site.config.store, job.kind, job.number);
-  auto modelled = load_modelled_site(on_latest_months(site), now);
-  if (!modelled) return tl::unexpected(modelled.error());
+  auto modelled = TRY(load_modelled_site(on_latest_months(site), now));
   const calibration::RunContext context{
       .seed = kSeed, .observer = [&](const calibration::Progress& progress) {
         return watch.say("calibrating the model", kCalibrating * share_of(progress));
       }};
-  if (const auto& design = modelled->site.config.recalibration.design; !design.empty()) {
-    return calibrate_metamodel(*modelled, design, folder, now, context);
+  if (const auto& design = modelled.site.config.recalibration.design; !design.empty()) {
+    return calibrate_metamodel(modelled, design, folder, now, context);
   }
-  const auto done = finish_calibration(std::move(*modelled), options, context);
-  if (!done) return tl::unexpected(done.error());
+  const auto done = TRY(finish_calibration(std::move(modelled), options, context));
   JobOutcome outcome =
-      outcome_of(done->calibration, done->modelled.facts, done->modelled.site.config, folder);
-  const auto written =
-      write_calibration(*done, outcome.result.document, metering::to_string(now), folder);
-  if (!written) return tl::unexpected(written.error());
+      outcome_of(done.calibration, done.modelled.facts, done.modelled.site.config, folder);
+  TRY(write_calibration(done, outcome.result.document, metering::to_string(now), folder));
   const calibration::RunContext following{
       .seed = kSeed, .observer = [&](const calibration::Progress& progress) {
         const double part = static_cast<double>(progress.done) / std::max(progress.total, 1);
@@ -212,7 +201,7 @@ Result<JobOutcome> calibrate(const OpenSite& site, const CalibrateOptions& optio
     return tl::unexpected(followed.error());
   }
   const FollowUp follow_up = std::move(followed).map_error(&Error::message);
-  outcome.result = calibration_result(done->calibration, done->modelled.facts, &follow_up);
+  outcome.result = calibration_result(done.calibration, done.modelled.facts, &follow_up);
   return outcome;
 }
 
@@ -251,19 +240,15 @@ Result<std::string> propose(const ModelledSite& modelled, const diagnosis::Diagn
   const SiteConfig& site = modelled.site.config;
   const std::string at = metering::to_string(now);
   const models::ModelStore store{site.versions_beside(), site.id};
-  const auto version =
-      propose_version(store, modelled, diagnosis, problem, at, diagnosis::VersionAuthor::automatic);
-  if (!version) return tl::unexpected(version.error());
-  const auto known = store.list();
-  if (!known) return tl::unexpected(known.error());
+  const auto version = TRY(propose_version(store, modelled, diagnosis, problem, at,
+                                           diagnosis::VersionAuthor::automatic));
+  const auto known = TRY(store.list());
   const std::string what =
-      fmt::format("version {} of the model has it", diagnosis::short_version(version->version));
-  if (!site.applies_itself || !may_apply_itself(*version, *known)) {
+      fmt::format("version {} of the model has it", diagnosis::short_version(version.version));
+  if (!site.applies_itself || !may_apply_itself(version, known)) {
     return what + " and is not in force yet";
   }
-  if (auto active = store.activate(version->version, at); !active) {
-    return tl::unexpected(active.error());
-  }
+  TRY(store.activate(version.version, at));
   outcome.next = JobKind::calibration;
   outcome.next_asked_by = "diagnosis";
   return what + " and is in force, because the site says so";
@@ -282,35 +267,29 @@ std::string named_words(const diagnosis::Diagnosis& diagnosis) {
 Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Instant now,
                             JobWatch& watch) {
   const auto folder = job_folder(site.config.store, job.kind, job.number);
-  if (auto chosen = choose_model(site.config, ModelKind::hourly); !chosen) {
-    return tl::unexpected(chosen.error());
-  }
-  auto modelled = load_modelled_site(std::move(site), now);
-  if (!modelled) return tl::unexpected(modelled.error());
-  const auto problem = prepare_diagnosis(*modelled);
-  if (!problem) return tl::unexpected(problem.error());
+  TRY(choose_model(site.config, ModelKind::hourly));
+  auto modelled = TRY(load_modelled_site(std::move(site), now));
+  const auto problem = TRY(prepare_diagnosis(modelled));
   const auto done =
-      diagnose_site(*modelled, *problem,
-                    {.rules = {}, .prior_none = modelled->site.config.prior_none, .seed = kSeed},
-                    [&](const char* what, double share) { return watch.say(what, share); });
-  if (!done) return tl::unexpected(done.error());
-  modelled->facts.seed = kSeed;
-  JobOutcome outcome{.accepted = true,
-                     .folder = folder.string(),
-                     .result = {.document = diagnosis_json(done->diagnosis, *problem,
-                                                           modelled->facts, done->others)}};
-  if (auto made = system::make_folder(folder); !made) return tl::unexpected(made.error());
-  const auto written = write_diagnosis(*done, *modelled, *problem, outcome.result.document,
-                                       metering::to_string(now), folder);
-  if (!written) return tl::unexpected(written.error());
-  if (done->diagnosis.added.empty() || done->diagnosis.not_confirmed) {
+      TRY(diagnose_site(modelled, problem,
+                        {.rules = {}, .prior_none = modelled.site.config.prior_none, .seed = kSeed},
+                        [&](const char* what, double share) { return watch.say(what, share); }));
+  modelled.facts.seed = kSeed;
+  JobOutcome outcome{
+      .accepted = true,
+      .folder = folder.string(),
+      .result = {.document = diagnosis_json(done.diagnosis, problem, modelled.facts, done.others)}};
+  TRY(system::make_folder(folder));
+  TRY(write_diagnosis(done, modelled, problem, outcome.result.document, metering::to_string(now),
+                      folder));
+  if (done.diagnosis.added.empty() || done.diagnosis.not_confirmed) {
     outcome.message = "nothing was named";
     return outcome;
   }
   outcome.named = true;
-  const auto proposed = propose(*modelled, done->diagnosis, *problem, now, outcome);
+  const auto proposed = propose(modelled, done.diagnosis, problem, now, outcome);
   outcome.message =
-      named_words(done->diagnosis) + "; " +
+      named_words(done.diagnosis) + "; " +
       (proposed ? *proposed
                 : "no version of the model could be stored: " + proposed.error().message);
   return outcome;
@@ -321,9 +300,7 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
 DoJob make_site_work(SharedSite site, const CalibrateOptions& options) {
   return [site = std::move(site), options](const StoredJob& job, metering::Instant now,
                                            JobWatch& watch) -> Result<JobOutcome> {
-    if (auto modelled = require_model(site->config); !modelled) {
-      return tl::unexpected(modelled.error());
-    }
+    TRY(require_model(site->config));
     if (job.kind == JobKind::diagnosis) return diagnose(on_latest_months(*site), job, now, watch);
     auto outcome = calibrate(*site, options, job, now, watch);
     return outcome ? outcome : with_known_weather(outcome.error(), site, now);
@@ -334,9 +311,8 @@ LookAtWeather make_weather_look(SharedSite site) {
   return [site = std::move(site)](
              const metering::MonthRange& months) -> Result<std::vector<MonthWeather>> {
     if (!site->config.weather) return std::vector<MonthWeather>{};
-    const auto live = open_sensors(site->config);
-    if (!live) return tl::unexpected(live.error());
-    return known_weather(site->config, site->calendar, months, live->get());
+    const auto live = TRY(open_sensors(site->config));
+    return known_weather(site->config, site->calendar, months, live.get());
   };
 }
 

@@ -20,7 +20,7 @@ void extend_start() {
 void feed_watchdog() { sd_notify(0, "WATCHDOG=1"); }
 
 Watchdog::Watchdog(Loop& loop, std::function<bool()> is_well)
-    : loop_(loop), is_well_(std::move(is_well)), self_(std::make_shared<Watchdog*>(this)) {
+    : loop_(loop), is_well_(std::move(is_well)) {
   std::uint64_t microseconds = 0;
   if (sd_watchdog_enabled(0, &microseconds) > 0) {
     // Half of the period, as sd_watchdog_enabled(3) recommends.
@@ -36,9 +36,7 @@ void Watchdog::ready() {
 void Watchdog::ending() { sd_notify(0, "STOPPING=1"); }
 
 void Watchdog::feed() {
-  loop_.after(period_, [weak = std::weak_ptr{self_}] {
-    if (const auto self = weak.lock()) (*self)->feed();
-  });
+  loop_.after(period_, alive_.guard([this] { feed(); }));
   if (is_well_()) feed_watchdog();
 }
 

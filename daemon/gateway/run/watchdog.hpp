@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 
 namespace recald::daemon {
@@ -31,7 +32,7 @@ class Watchdog {
   Loop& loop_;
   std::function<bool()> is_well_;
   std::chrono::milliseconds period_{0};  ///< 0: no watchdog.
-  std::shared_ptr<Watchdog*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon

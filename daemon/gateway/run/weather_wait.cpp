@@ -56,18 +56,13 @@ Result<std::vector<MonthWeather>> look_safely(const LookAtWeather& look,
 }  // namespace
 
 WeatherWait::WeatherWait(Ports ports, LookAtWeather look, std::function<void()> ask)
-    : ports_(ports),
-      look_(std::move(look)),
-      ask_(std::move(ask)),
-      self_(std::make_shared<WeatherWait*>(this)) {}
+    : ports_(ports), look_(std::move(look)), ask_(std::move(ask)) {}
 
 void WeatherWait::start() { look_every_hour(); }
 
 void WeatherWait::look_every_hour() {
   look_again();
-  ports_.loop.after(kLookEvery, [weak = std::weak_ptr{self_}] {
-    if (const auto self = weak.lock()) (*self)->look_every_hour();
-  });
+  ports_.loop.after(kLookEvery, alive_.guard([this] { look_every_hour(); }));
 }
 
 /// Nothing while a calibration waits or runs: it will see the new weather. One that was cancelled,
@@ -103,12 +98,10 @@ void WeatherWait::look_again() {
   // The work may outlive this object, so it has copies of everything it uses.
   const auto found = std::make_shared<Result<std::vector<MonthWeather>>>();
   ports_.worker.run([look = look_, months = *months, found] { *found = look_safely(look, months); },
-                    [weak = std::weak_ptr{self_}, then = std::move(*known), found] {
-                      const auto self = weak.lock();
-                      if (!self) return;
-                      (*self)->is_looking_ = false;
-                      if (*found) (*self)->compare(then, std::move(**found));
-                    });
+                    alive_.guard([this, then = std::move(*known), found] {
+                      is_looking_ = false;
+                      if (*found) compare(then, std::move(**found));
+                    }));
 }
 
 void WeatherWait::compare(const Known& then, std::vector<MonthWeather> now) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
@@ -61,7 +62,7 @@ class WeatherWait {
   std::optional<std::chrono::milliseconds> looked_at_;  ///< Monotonic.
   /// Whatever happens to the request, it is not repeated for the same weather.
   std::optional<Known> asked_;
-  std::shared_ptr<WeatherWait*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon
