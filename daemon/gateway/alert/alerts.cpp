@@ -70,8 +70,7 @@ Alerts::Alerts(Ports ports, std::shared_ptr<const SiteConfig> site,
       deliver_(std::move(deliver)),
       tell_(std::move(tell)),
       rules_(rules),
-      told_(std::move(told)),
-      self_(std::make_shared<Alerts*>(this)) {
+      told_(std::move(told)) {
   set_site(std::move(site));
 }
 
@@ -108,12 +107,11 @@ void Alerts::schedule(milliseconds wait) {
   const milliseconds due = ports_.loop.now().monotonic + wait;
   if (due_ && *due_ <= due) return;
   due_ = due;
-  ports_.loop.after(wait, [weak = std::weak_ptr{self_}, due] {
-    const auto self = weak.lock();
-    if (!self || (*self)->due_ != due) return;
-    (*self)->due_.reset();
-    (*self)->look();
-  });
+  ports_.loop.after(wait, alive_.guard([this, due] {
+    if (due_ != due) return;
+    due_.reset();
+    look();
+  }));
 }
 
 void Alerts::look() {
@@ -137,23 +135,19 @@ void Alerts::look() {
 
 Result<std::int64_t> Alerts::position_of(Outgoing& outgoing, Instant now) {
   if (outgoing.position) return *outgoing.position;
-  const auto stored = ports_.store.cursor(outgoing.cursor);
-  if (!stored) return tl::unexpected(stored.error());
-  if (*stored) {
-    outgoing.position = **stored;
-    return **stored;
+  const auto stored = TRY(ports_.store.cursor(outgoing.cursor));
+  if (stored) {
+    outgoing.position = *stored;
+    return *stored;
   }
-  const auto past = ports_.store.events(kEventsOfThePast);
-  if (!past) return tl::unexpected(past.error());
+  const auto past = TRY(ports_.store.events(kEventsOfThePast));
   std::int64_t position = 0;
-  for (const StoreEvent& event : *past) {
+  for (const StoreEvent& event : past) {
     const bool is_old = is_plausible_time(event.time) && event.time < now - kToldAtFirst;
     if (is_old) position = std::max(position, event.number);
   }
   // Now, so that what this destination misses is still new to it after a restart.
-  if (auto put = ports_.store.put_cursor(outgoing.cursor, position); !put) {
-    return tl::unexpected(put.error());
-  }
+  TRY(ports_.store.put_cursor(outgoing.cursor, position));
   outgoing.position = position;
   return position;
 }
@@ -168,19 +162,17 @@ Result<Alerts::Pending> Alerts::pending_for(Outgoing& outgoing, const Moment& no
 }
 
 Result<void> Alerts::add_stored(Outgoing& outgoing, const Moment& now, Pending& pending) {
-  const auto position = position_of(outgoing, now.instant());
-  if (!position) return tl::unexpected(position.error());
+  const auto position = TRY(position_of(outgoing, now.instant()));
   // All of them: in quiet hours an error may stand behind a thousand meters that fell silent.
-  pending.position = *position;
+  pending.position = position;
   for (int page = 0; page < kPagesMax; ++page) {
-    const auto events = ports_.store.events_after(*pending.position, rules_.events);
-    if (!events) return tl::unexpected(events.error());
-    for (const StoreEvent& event : *events) {
+    const auto events = TRY(ports_.store.events_after(*pending.position, rules_.events));
+    for (const StoreEvent& event : events) {
       pending.position = event.number;
       const bool is_new = is_alert(event, now.instant()) && !was_told(outgoing, event);
       if (is_new) pending.events.push_back(event);
     }
-    if (std::ssize(*events) < rules_.events) break;
+    if (std::ssize(events) < rules_.events) break;
   }
   return {};
 }
@@ -242,13 +234,11 @@ void Alerts::send(const Outgoing& outgoing, Pending pending, Instant now) {
   const auto sent = std::make_shared<Result<void>>();
   AlertMessage message = alert_message(*site_, calendar_, pending.events, now);
   is_sending_ = true;
-  ports_.worker.run(
-      [deliver = deliver_, destination = outgoing.destination, message = std::move(message),
-       stop = stop_.get_token(),
-       sent] { *sent = deliver_safely(deliver, destination, message, stop); },
-      [weak = std::weak_ptr{self_}, cursor = outgoing.cursor, pending = std::move(pending), sent] {
-        if (const auto self = weak.lock()) (*self)->finish(cursor, pending, *sent);
-      });
+  ports_.worker.run([deliver = deliver_, destination = outgoing.destination,
+                     message = std::move(message), stop = stop_.get_token(),
+                     sent] { *sent = deliver_safely(deliver, destination, message, stop); },
+                    alive_.guard([this, cursor = outgoing.cursor, pending = std::move(pending),
+                                  sent] { finish(cursor, pending, *sent); }));
 }
 
 void Alerts::finish(const std::string& cursor, const Pending& pending, const Result<void>& sent) {

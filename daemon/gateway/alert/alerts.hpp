@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
@@ -125,7 +126,7 @@ class Alerts {
   bool is_sending_ = false;
   std::optional<std::chrono::milliseconds> due_;
   std::stop_source stop_;
-  std::shared_ptr<Alerts*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon

@@ -11,9 +11,7 @@ Result<void> post(const WebhookConfig& config, const AlertMessage& message,
   delivery::Webhook webhook{
       .url = config.url, .token = {}, .trusted_certificate = config.trusted_certificate};
   if (!config.token_file.empty()) {
-    auto token = http::read_token_file(config.token_file);
-    if (!token) return tl::unexpected(token.error());
-    webhook.token = std::move(*token);
+    webhook.token = TRY(http::read_token_file(config.token_file));
   }
   return delivery::post_json(webhook, message.document, stop);
 }
@@ -26,9 +24,7 @@ Result<void> mail(const MailConfig& config, const AlertMessage& message,
                               .encrypts = config.encrypts,
                               .trusted_certificate = config.trusted_certificate};
   if (!config.password_file.empty()) {
-    auto password = http::read_password_file(config.password_file);
-    if (!password) return tl::unexpected(password.error());
-    server.password = std::move(*password);
+    server.password = TRY(http::read_password_file(config.password_file));
   }
   return delivery::send_mail(server,
                              {.from = config.from,

@@ -17,11 +17,7 @@ constexpr std::chrono::seconds kStatePublishMax{10};
 
 BrokerState::BrokerState(Loop& loop, std::unique_ptr<Worker> worker,
                          std::shared_ptr<const SiteConfig> site, std::shared_ptr<BrokerLink> link)
-    : loop_(loop),
-      site_(std::move(site)),
-      link_(std::move(link)),
-      self_(std::make_shared<BrokerState*>(this)),
-      worker_(std::move(worker)) {}
+    : loop_(loop), site_(std::move(site)), link_(std::move(link)), worker_(std::move(worker)) {}
 
 BrokerState::~BrokerState() { stop_.request_stop(); }
 
@@ -54,9 +50,7 @@ void BrokerState::set(const SiteFacts& facts) {
           done += part.size();
         }
       },
-      [weak = std::weak_ptr{self_}, shared, published] {
-        if (const auto self = weak.lock()) (*self)->finish(std::span{*shared}.first(*published));
-      });
+      alive_.guard([this, shared, published] { finish(std::span{*shared}.first(*published)); }));
 }
 
 void BrokerState::finish(std::span<const mqtt::Message> published) {

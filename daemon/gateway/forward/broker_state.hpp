@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/worker.hpp"
 #include "daemon/gateway/forward/broker_link.hpp"
@@ -45,7 +46,7 @@ class BrokerState {
   bool is_publishing_ = false;
   bool is_anew_ = false;
   std::stop_source stop_;
-  std::shared_ptr<BrokerState*> self_;
+  Alive alive_;
   std::unique_ptr<Worker> worker_;  ///< Last: its work must end before the members it uses.
 };
 

@@ -36,14 +36,12 @@ constexpr std::array kJobKinds{JobKind::calibration, JobKind::diagnosis};
 /// The number before the first job that waits or runs, so that a position passes none; without
 /// one, that of the newest.
 Result<std::int64_t> last_settled_job(Store& store) {
-  const auto unfinished = store.unfinished_jobs();
-  if (!unfinished) return tl::unexpected(unfinished.error());
-  if (!unfinished->empty()) return unfinished->front().number - 1;
+  const auto unfinished = TRY(store.unfinished_jobs());
+  if (!unfinished.empty()) return unfinished.front().number - 1;
   std::int64_t last = 0;
   for (const JobKind kind : kJobKinds) {
-    const auto newest = store.jobs(kind, 1);
-    if (!newest) return tl::unexpected(newest.error());
-    if (!newest->empty()) last = std::max(last, newest->front().number);
+    const auto newest = TRY(store.jobs(kind, 1));
+    if (!newest.empty()) last = std::max(last, newest.front().number);
   }
   return last;
 }
@@ -54,9 +52,8 @@ Result<std::vector<StoredJob>> jobs_between(Store& store, std::int64_t after, st
   std::vector<StoredJob> jobs;
   for (std::int64_t number = after + 1; number <= last; ++number) {
     if (static_cast<int>(jobs.size()) == limit) break;
-    auto job = store.job(number);
-    if (!job) return tl::unexpected(job.error());
-    if (*job) jobs.push_back(std::move(**job));
+    auto job = TRY(store.job(number));
+    if (job) jobs.push_back(std::move(*job));
   }
   return jobs;
 }
@@ -71,7 +68,6 @@ Forwarder::Forwarder(Ports ports, std::unique_ptr<Worker> worker, Destination de
       tell_(std::move(tell)),
       rules_(rules),
       batch_(rules.batch),
-      self_(std::make_shared<Forwarder*>(this)),
       worker_(std::move(worker)) {}
 
 Forwarder::~Forwarder() { stop_.request_stop(); }
@@ -87,12 +83,11 @@ void Forwarder::schedule(milliseconds wait) {
   const milliseconds due = ports_.loop.now().monotonic + wait;
   if (due_ && *due_ <= due) return;
   due_ = due;
-  ports_.loop.after(wait, [weak = std::weak_ptr{self_}, due] {
-    const auto self = weak.lock();
-    if (!self || (*self)->due_ != due) return;
-    (*self)->due_.reset();
-    (*self)->look();
-  });
+  ports_.loop.after(wait, alive_.guard([this, due] {
+    if (due_ != due) return;
+    due_.reset();
+    look();
+  }));
 }
 
 void Forwarder::try_now() {
@@ -115,25 +110,19 @@ Result<OutgoingBatch> Forwarder::next() {
   OutgoingBatch batch;
   // Its events and results begin with the first look, however long the past takes.
   if (destination_.wants_events) {
-    const auto after = event_position();
-    if (!after) return tl::unexpected(after.error());
-    batch.after.events = *after;
+    batch.after.events = TRY(event_position());
   }
   if (destination_.wants_results) {
-    const auto after = result_position();
-    if (!after) return tl::unexpected(after.error());
-    batch.after.results = *after;
+    batch.after.results = TRY(result_position());
   }
   const auto from = position();  // first: what waits has a limit, whatever is told meanwhile
   if (!from) return tl::unexpected(from.error());
   auto past = next_history();
   if (!past || past->size() > 0) return past;
   batch.after.entries = from->told;
-  auto entries = ports_.store.outbox_after(from->told, batch_);
-  if (!entries) return tl::unexpected(entries.error());
-  batch.entries = std::move(*entries);
+  batch.entries = TRY(ports_.store.outbox_after(from->told, batch_));
   for (const auto add : {&Forwarder::add_events, &Forwarder::add_results}) {
-    if (auto added = (this->*add)(batch); !added) return tl::unexpected(added.error());
+    TRY((this->*add)(batch));
   }
   return batch;
 }
@@ -143,47 +132,39 @@ Result<OutgoingBatch> Forwarder::next_history() {
   OutgoingBatch batch;
   if (destination_.history.empty()) return batch;
   const std::string cursor = history_cursor(destination_.id);
-  const auto known = ports_.store.cursor(cursor);
-  if (!known) return tl::unexpected(known.error());
-  const std::int64_t after = known->value_or(0);
+  const auto known = TRY(ports_.store.cursor(cursor));
+  const std::int64_t after = known.value_or(0);
   if (after >= record::kHistoryTold) return batch;
   if (after == 0) {
     // What waits by now is part of the past, which is read after this.
-    const auto position = ports_.store.outbox_position(destination_.id);
-    if (!position) return tl::unexpected(position.error());
-    auto put = ports_.store.put_outbox_position(destination_.id, position->last);
-    if (!put) return tl::unexpected(put.error());
+    const auto position = TRY(ports_.store.outbox_position(destination_.id));
+    TRY(ports_.store.put_outbox_position(destination_.id, position.last));
   }
-  auto entries = history_after(ports_.store, destination_.history, after, batch_);
-  if (!entries) return tl::unexpected(entries.error());
-  if (entries->empty() && !destination_.has_identity) {
-    auto put = ports_.store.put_cursor(cursor, record::kHistoryTold);
-    if (!put) return tl::unexpected(put.error());
+  auto entries = TRY(history_after(ports_.store, destination_.history, after, batch_));
+  if (entries.empty() && !destination_.has_identity) {
+    TRY(ports_.store.put_cursor(cursor, record::kHistoryTold));
     return batch;
   }
-  if (entries->empty()) entries->push_back(kEndOfHistory);
+  if (entries.empty()) entries.push_back(kEndOfHistory);
   batch.is_history = true;
   batch.after.entries = after;
-  batch.entries = std::move(*entries);
+  batch.entries = std::move(entries);
   return batch;
 }
 
 Result<void> Forwarder::identify(OutgoingBatch& batch) {
   if (!destination_.has_identity) return {};
-  const auto identity = outbox_identity(ports_.store, destination_.id);
-  if (!identity) return tl::unexpected(identity.error());
-  const auto taken = has_taken(ports_.store, destination_.id, *identity);
-  if (!taken) return tl::unexpected(taken.error());
-  batch.identity = *identity;
-  batch.is_first = batch.is_history ? batch.after.entries == 0 : !*taken;
+  const auto identity = TRY(outbox_identity(ports_.store, destination_.id));
+  const auto taken = TRY(has_taken(ports_.store, destination_.id, identity));
+  batch.identity = identity;
+  batch.is_first = batch.is_history ? batch.after.entries == 0 : !taken;
   return {};
 }
 
 Result<std::int64_t> Forwarder::event_position() {
   return position_of(events_cursor(destination_.id), [this]() -> Result<std::int64_t> {
-    const auto last = ports_.store.events(1);
-    if (!last) return tl::unexpected(last.error());
-    return last->empty() ? 0 : last->front().number;
+    const auto last = TRY(ports_.store.events(1));
+    return last.empty() ? 0 : last.front().number;
   });
 }
 
@@ -195,21 +176,16 @@ Result<std::int64_t> Forwarder::result_position() {
 Result<void> Forwarder::add_events(OutgoingBatch& batch) {
   const int room = room_in(batch);
   if (!destination_.wants_events || room == 0) return {};
-  auto events = ports_.store.events_after(batch.after.events, room);
-  if (!events) return tl::unexpected(events.error());
-  batch.events = std::move(*events);
+  batch.events = TRY(ports_.store.events_after(batch.after.events, room));
   return {};
 }
 
 Result<void> Forwarder::add_results(OutgoingBatch& batch) {
   if (!destination_.wants_results) return {};
-  const auto last = last_settled_job(ports_.store);
-  if (!last) return tl::unexpected(last.error());
-  if (batch.after.results >= *last) return {};
-  auto results = jobs_between(ports_.store, batch.after.results, *last,
-                              std::min(room_in(batch), kResults_max));
-  if (!results) return tl::unexpected(results.error());
-  batch.results = std::move(*results);
+  const auto last = TRY(last_settled_job(ports_.store));
+  if (batch.after.results >= last) return {};
+  batch.results = TRY(jobs_between(ports_.store, batch.after.results, last,
+                                   std::min(room_in(batch), kResults_max)));
   return {};
 }
 
@@ -219,16 +195,12 @@ Result<OutboxPosition> Forwarder::position() {
   const std::int64_t left_out = position->last - position->told - rules_.waiting_max;
   if (left_out <= 0) return position;
   if (destination_.has_identity) {
-    if (auto begun = begin_anew(ports_.store, destination_.id); !begun) {
-      return tl::unexpected(begun.error());
-    }
+    TRY(begin_anew(ports_.store, destination_.id));
     tell_of_anew("has not taken anything for so long that more waits than is kept for it");
     return position;
   }
   position->told += left_out;
-  if (auto put = ports_.store.put_outbox_position(destination_.id, position->told); !put) {
-    return tl::unexpected(put.error());
-  }
+  TRY(ports_.store.put_outbox_position(destination_.id, position->told));
   tell_({.time = ports_.loop.now().instant(),
          .severity = Severity::error,
          .kind = "forward_left_out",
@@ -244,14 +216,11 @@ Result<OutboxPosition> Forwarder::position() {
 /// last.
 Result<std::int64_t> Forwarder::position_of(const std::string& cursor,
                                             const std::function<Result<std::int64_t>()>& last) {
-  const auto known = ports_.store.cursor(cursor);
-  if (!known) return tl::unexpected(known.error());
-  if (*known) return **known;
+  const auto known = TRY(ports_.store.cursor(cursor));
+  if (known) return *known;
   auto position = last();
   if (!position) return position;
-  if (auto put = ports_.store.put_cursor(cursor, *position); !put) {
-    return tl::unexpected(put.error());
-  }
+  TRY(ports_.store.put_cursor(cursor, *position));
   return position;
 }
 
@@ -262,9 +231,7 @@ void Forwarder::send(OutgoingBatch batch) {
   is_asked_ = false;
   worker_->run([sink = sink_, shared, sent,
                 stop = stop_.get_token()] { *sent = send_safely(*sink, *shared, stop); },
-               [weak = std::weak_ptr{self_}, shared, sent] {
-                 if (const auto self = weak.lock()) (*self)->finish(*shared, *sent);
-               });
+               alive_.guard([this, shared, sent] { finish(*shared, *sent); }));
 }
 
 void Forwarder::finish(const OutgoingBatch& batch, const Sent& sent) {

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
@@ -111,7 +112,7 @@ class Forwarder {
   bool is_asked_ = false;  ///< try_now() during the attempt.
   std::optional<std::chrono::milliseconds> due_;
   std::stop_source stop_;
-  std::shared_ptr<Forwarder*> self_;
+  Alive alive_;
   std::unique_ptr<Worker> worker_;  ///< Last: its work must end before the members it uses.
 };
 

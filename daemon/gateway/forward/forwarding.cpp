@@ -89,11 +89,10 @@ Forwarding::Forwarding(Ports ports, std::shared_ptr<const SiteConfig> site,
       site_(std::move(site)),
       calendar_(std::move(calendar)),
       tell_(std::move(tell)),
-      on_value_(std::move(on_value)),
-      self_(std::make_shared<Forwarding*>(this)) {}
+      on_value_(std::move(on_value)) {}
 
 Forwarding::~Forwarding() {
-  self_.reset();
+  alive_ = {};     // from here on nothing that was posted is called
   state_.reset();  // first: others wait for what it publishes
   forwarders_.clear();
   fleet_.reset();
@@ -140,12 +139,10 @@ void Forwarding::begin() {
 /// Without its password, say: the reason may go away by itself.
 void Forwarding::begin_again_in_a_minute() {
   if (std::exchange(is_again_due_, true)) return;
-  ports_.loop.after(std::chrono::minutes{1}, [weak = std::weak_ptr{self_}] {
-    const auto self = weak.lock();
-    if (!self) return;
-    (*self)->is_again_due_ = false;
-    (*self)->begin();
-  });
+  ports_.loop.after(std::chrono::minutes{1}, alive_.guard([this] {
+    is_again_due_ = false;
+    begin();
+  }));
 }
 
 void Forwarding::connect() {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adapters/mqtt/message.hpp"
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "daemon/gateway/forward/broker_link.hpp"
@@ -70,13 +71,10 @@ class Forwarding {
 
   /// A function for other threads: calls a member on the loop's thread, while this lives.
   template <class... Arguments>
-  [[nodiscard]] auto on_loop(void (Forwarding::*member)(Arguments...)) const {
-    return [&loop = ports_.loop, weak = std::weak_ptr{self_}, member](const auto&... values) {
-      loop.post([weak, member, copies = std::tuple{values...}] {
-        const auto self = weak.lock();
-        if (!self) return;
-        std::apply([&](const auto&... each) { ((*self)->*member)(each...); }, copies);
-      });
+  [[nodiscard]] auto on_loop(void (Forwarding::*member)(Arguments...)) {
+    auto call = alive_.guard([this, member](const auto&... each) { (this->*member)(each...); });
+    return [&loop = ports_.loop, call](const auto&... values) {
+      loop.post([call, copies = std::tuple{values...}]() mutable { std::apply(call, copies); });
     };
   }
 
@@ -93,7 +91,7 @@ class Forwarding {
   std::unique_ptr<BrokerState> state_;
   std::shared_ptr<RecordLink> fleet_;
   std::vector<std::unique_ptr<Forwarder>> forwarders_;
-  std::shared_ptr<Forwarding*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon

@@ -20,9 +20,7 @@ Result<mqtt::Broker> broker_of(const BrokerConfig& config) {
                       .certificate_file = config.certificate_file,
                       .key_file = config.key_file};
   if (config.login.user.empty()) return broker;
-  auto password = http::read_password_file(config.login.password_file);
-  if (!password) return tl::unexpected(password.error());
-  broker.password = std::move(*password);
+  broker.password = TRY(http::read_password_file(config.login.password_file));
   return broker;
 }
 
@@ -32,9 +30,8 @@ Result<std::unique_ptr<mqtt::Connection>> open_broker(const BrokerConfig& config
                                                       mqtt::Session session,
                                                       mqtt::Connection::OnMessage on_message,
                                                       mqtt::Connection::OnState on_state) {
-  auto broker = broker_of(config);
-  if (!broker) return tl::unexpected(broker.error());
-  return mqtt::Connection::open(std::move(*broker), std::move(session), std::move(on_message),
+  auto broker = TRY(broker_of(config));
+  return mqtt::Connection::open(std::move(broker), std::move(session), std::move(on_message),
                                 std::move(on_state));
 }
 

@@ -62,11 +62,10 @@ Result<std::shared_ptr<RecordLink>> RecordLink::open(const BrokerConfig& broker,
     on_state(is_connected, why);
   };
   auto connection =
-      open_broker(broker, {.will = {}, .birth = {}, .topics = {record::watermark_topic(site)}},
-                  hear, hear_state);
-  if (!connection) return tl::unexpected(connection.error());
+      TRY(open_broker(broker, {.will = {}, .birth = {}, .topics = {record::watermark_topic(site)}},
+                      hear, hear_state));
   return std::shared_ptr<RecordLink>{
-      new RecordLink{record::batch_topic(site), std::move(heard), std::move(*connection)}};
+      new RecordLink{record::batch_topic(site), std::move(heard), std::move(connection)}};
 }
 
 Result<void> RecordLink::publish(std::string batch, std::chrono::milliseconds time_max,

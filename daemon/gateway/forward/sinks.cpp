@@ -25,14 +25,10 @@ Result<delivery::Post> post_to(const RemoteWriteConfig& config) {
                       .headers = {},
                       .body = {}};
   if (!config.token_file.empty()) {
-    auto token = http::read_token_file(config.token_file);
-    if (!token) return tl::unexpected(token.error());
-    post.token = std::move(*token);
+    post.token = TRY(http::read_token_file(config.token_file));
   }
   if (!config.login.user.empty()) {
-    auto password = http::read_password_file(config.login.password_file);
-    if (!password) return tl::unexpected(password.error());
-    post.password = std::move(*password);
+    post.password = TRY(http::read_password_file(config.login.password_file));
   }
   return post;
 }

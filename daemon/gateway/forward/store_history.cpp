@@ -38,11 +38,10 @@ class Collected {
 
   /// Day by day, so that a long record is never in memory.
   Result<void> add_intervals(std::uint32_t number, const MeterInStore& meter, Instant from) {
-    const auto extent = store_.interval_extent(number);
-    if (!extent) return tl::unexpected(extent.error());
-    if (!*extent) return {};
-    Instant at = std::max(from, (*extent)->begin);
-    while (!is_full() && at <= (*extent)->end) {
+    const auto extent = TRY(store_.interval_extent(number));
+    if (!extent) return {};
+    Instant at = std::max(from, extent->begin);
+    while (!is_full() && at <= extent->end) {
       const Instant next = std::chrono::floor<days>(at) + days{1};
       auto read = store_.for_each_interval(number, {at, next}, [&](const StoredInterval& one) {
         if (is_full()) return;
@@ -58,14 +57,13 @@ class Collected {
   }
 
   Result<void> add_months(std::uint32_t number, const MeterInStore& meter, std::int64_t after) {
-    const auto months = store_.months(number);
-    if (!months) return tl::unexpected(months.error());
-    for (std::size_t i = 0; i < months->size() && !is_full(); ++i) {
+    const auto months = TRY(store_.months(number));
+    for (std::size_t i = 0; i < months.size() && !is_full(); ++i) {
       const std::int64_t place =
           number * kPerMeter + kMonthsDay * kPerDay + 1 + static_cast<std::int64_t>(i);
       if (place <= after) continue;
       entries.push_back(
-          {.number = place, .meter = meter.id, .interval = meter.interval, .stored = (*months)[i]});
+          {.number = place, .meter = meter.id, .interval = meter.interval, .stored = months[i]});
     }
     return {};
   }
@@ -84,9 +82,8 @@ Result<std::vector<OutboxEntry>> history_after(Store& store,
                                                std::int64_t after, int limit) {
   std::map<std::uint32_t, const MeterInStore*> by_number;
   for (const MeterInStore& meter : meters) {
-    const auto number = store.find_meter(meter.id);
-    if (!number) return tl::unexpected(number.error());
-    if (*number) by_number[**number] = &meter;
+    const auto number = TRY(store.find_meter(meter.id));
+    if (number) by_number[*number] = &meter;
   }
   Collected collected{store, limit};
   for (const auto& [number, meter] : by_number) {
@@ -94,12 +91,9 @@ Result<std::vector<OutboxEntry>> history_after(Store& store,
     if (collected.is_full() || after >= first + kPerMeter) continue;
     const std::int64_t in_meter = std::max<std::int64_t>(after - first, 0);
     if (in_meter < kMonthsDay * kPerDay) {
-      auto added = collected.add_intervals(number, *meter, start_after(in_meter));
-      if (!added) return tl::unexpected(added.error());
+      TRY(collected.add_intervals(number, *meter, start_after(in_meter)));
     }
-    if (auto added = collected.add_months(number, *meter, after); !added) {
-      return tl::unexpected(added.error());
-    }
+    TRY(collected.add_months(number, *meter, after));
   }
   return std::move(collected.entries);
 }
