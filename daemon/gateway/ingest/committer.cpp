@@ -30,8 +30,7 @@ Committer::Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommi
       store_(store),
       rules_(rules),
       on_committed_(std::move(on_committed)),
-      on_refusal_(std::move(on_refusal)),
-      self_(std::make_shared<Committer*>(this)) {}
+      on_refusal_(std::move(on_refusal)) {}
 
 /// The newest state of a register explains all intervals before it.
 void Committer::put_state(const StoreBatch::Register& entry) {
@@ -77,11 +76,10 @@ void Committer::schedule(milliseconds wait) {
   const milliseconds due = loop_.now().monotonic + wait;
   if (due_ && *due_ <= due) return;
   due_ = due;
-  loop_.after(wait, [weak = std::weak_ptr{self_}, due] {
-    const auto self = weak.lock();
-    if (!self || (*self)->due_ != due) return;
-    (void)(*self)->flush();
-  });
+  loop_.after(wait, alive_.guard([this, due] {
+    if (due_ != due) return;
+    (void)flush();
+  }));
 }
 
 Result<void> Committer::flush() {

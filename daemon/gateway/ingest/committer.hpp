@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "daemon/gateway/poll/latency_histogram.hpp"
@@ -70,7 +71,7 @@ class Committer {
   /// When the next flush is due by the monotonic clock; a scheduled call compares it
   /// with its own time.
   std::optional<std::chrono::milliseconds> due_;
-  std::shared_ptr<Committer*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon

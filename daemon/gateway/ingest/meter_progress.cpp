@@ -12,24 +12,20 @@ constexpr std::chrono::hours kUsualDays{24 * 31};
 Result<MeterProgress> MeterProgress::open(
     const metering::Meter& meter, const metering::LocalCalendar& calendar, Store& store,
     const std::function<void(const metering::Reading&)>& remember) {
-  const auto number = store.meter_number(meter.id, meter.interval);
-  if (!number) return tl::unexpected(number.error());
-  MeterProgress progress{.stored = {*number, meter},
+  const auto number = TRY(store.meter_number(meter.id, meter.interval));
+  MeterProgress progress{.stored = {number, meter},
                          .open_month = OpenMonth{calendar, meter.interval}};
-  const auto extent = store.interval_extent(*number);
-  if (!extent) return tl::unexpected(extent.error());
-  if (*extent) {
-    const metering::TimeSpan recent{(*extent)->end - kUsualDays, metering::Instant::max()};
-    const auto read = store.for_each_interval(*number, recent, [&](const StoredInterval& stored) {
+  const auto extent = TRY(store.interval_extent(number));
+  if (extent) {
+    const metering::TimeSpan recent{extent->end - kUsualDays, metering::Instant::max()};
+    TRY(store.for_each_interval(number, recent, [&](const StoredInterval& stored) {
       if (remember) remember(stored.reading);
       progress.recall(stored.reading);
-    });
-    if (!read) return tl::unexpected(read.error());
+    }));
   }
-  const auto months = store.months(*number);
-  if (!months) return tl::unexpected(months.error());
-  if (!months->empty()) {
-    progress.closed_until = calendar.month_span(months->back().figure.month).end;
+  const auto months = TRY(store.months(number));
+  if (!months.empty()) {
+    progress.closed_until = calendar.month_span(months.back().figure.month).end;
   }
   return progress;
 }

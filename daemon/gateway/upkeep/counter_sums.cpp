@@ -24,7 +24,7 @@ constexpr Reason kBroken =
 Result<std::map<Instant, double>> midnights(Store& store, std::uint32_t meter) {
   std::map<Instant, double> register_kWh;
   std::optional<RegisterSample> before;
-  const auto read = store.for_each_sample(meter, "energy", [&](const RegisterSample& sample) {
+  TRY(store.for_each_sample(meter, "energy", [&](const RegisterSample& sample) {
     const Instant midnight = std::chrono::floor<std::chrono::days>(sample.time);
     if (sample.time == midnight) {
       register_kWh[midnight] = sample.value_kWh;
@@ -35,8 +35,7 @@ Result<std::map<Instant, double>> midnights(Store& store, std::uint32_t meter) {
       register_kWh[midnight] = before->value_kWh + share * (sample.value_kWh - before->value_kWh);
     }
     before = sample;
-  });
-  if (!read) return tl::unexpected(read.error());
+  }));
   return register_kWh;
 }
 
@@ -48,7 +47,7 @@ struct DaySum {
 /// Sums of the days whose intervals all came from one unbroken run of the register.
 Result<std::map<Instant, DaySum>> day_sums(Store& store, const StoredMeter& meter) {
   std::map<Instant, DaySum> sums;
-  const auto read = store.for_each_interval(
+  TRY(store.for_each_interval(
       meter.number, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
         const metering::Reading& reading = interval.reading;
         const bool counts =
@@ -58,8 +57,7 @@ Result<std::map<Instant, DaySum>> day_sums(Store& store, const StoredMeter& mete
         sum.energy_kWh +=
             reading.mean_kW * static_cast<double>(meter.meter.interval.count()) / 3600.0;
         sum.length += meter.meter.interval;
-      });
-  if (!read) return tl::unexpected(read.error());
+      }));
   std::erase_if(sums, [](const auto& day) { return day.second.length < std::chrono::days{1}; });
   return sums;
 }
@@ -68,20 +66,16 @@ Result<std::map<Instant, DaySum>> day_sums(Store& store, const StoredMeter& mete
 
 Result<CounterComparison> compare_with_counter(Store& store, const StoredMeter& meter) {
   CounterComparison comparison;
-  const auto states = store.registers(meter.number);
-  if (!states) return tl::unexpected(states.error());
-  if (states->empty()) return comparison;
-  const double resolution_kWh = states->front().settings.resolution_kWh;
-  const auto register_kWh = midnights(store, meter.number);
-  if (!register_kWh) return tl::unexpected(register_kWh.error());
-  const auto edited = store.edited_days(meter.number);
-  if (!edited) return tl::unexpected(edited.error());
-  const auto sums = day_sums(store, meter);
-  if (!sums) return tl::unexpected(sums.error());
-  for (const auto& [day, sum] : *sums) {
-    const auto begin = register_kWh->find(day);
-    const auto end = register_kWh->find(day + std::chrono::days{1});
-    if (begin == register_kWh->end() || end == register_kWh->end() || edited->contains(day)) {
+  const auto states = TRY(store.registers(meter.number));
+  if (states.empty()) return comparison;
+  const double resolution_kWh = states.front().settings.resolution_kWh;
+  const auto register_kWh = TRY(midnights(store, meter.number));
+  const auto edited = TRY(store.edited_days(meter.number));
+  const auto sums = TRY(day_sums(store, meter));
+  for (const auto& [day, sum] : sums) {
+    const auto begin = register_kWh.find(day);
+    const auto end = register_kWh.find(day + std::chrono::days{1});
+    if (begin == register_kWh.end() || end == register_kWh.end() || edited.contains(day)) {
       continue;
     }
     ++comparison.days;

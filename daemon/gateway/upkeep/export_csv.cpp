@@ -48,9 +48,8 @@ Result<void> export_months(Store& store, const metering::LocalCalendar& calendar
                            std::ostream& out) {
   out << "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,revision,tzdata\n";
   for (const StoredMeter& meter : meters) {
-    const auto months = store.months(meter.number);
-    if (!months) return tl::unexpected(months.error());
-    for (const StoredMonth& month : *months) {
+    const auto months = TRY(store.months(meter.number));
+    for (const StoredMonth& month : months) {
       if (!span.contains(calendar.month_span(month.figure.month).begin)) continue;
       out << month_line(meter.meter.id, month);
     }

@@ -27,24 +27,20 @@ class Import {
 
   [[nodiscard]] Result<ImportOutcome> run(const std::filesystem::path& file,
                                           metering::Instant now) {
-    if (auto begun = begin(file, now); !begun) return tl::unexpected(begun.error());
-    auto report = csv::read_readings(
-        file, file_options(), {.on_meter = {}, .on_reading = [&](const Reading& r) { take(r); }});
-    if (!report) return tl::unexpected(report.error());
+    TRY(begin(file, now));
+    auto report = TRY(csv::read_readings(
+        file, file_options(), {.on_meter = {}, .on_reading = [&](const Reading& r) { take(r); }}));
     for (std::size_t i = 0; i < meters_.size(); ++i) commit(i);
     if (!failed_) return tl::unexpected(failed_.error());
-    outcome_.file = std::move(*report);
+    outcome_.file = std::move(report);
     if (outcome_.taken == 0) {
-      if (auto gone = store_.remove_edit(edit_); !gone) return tl::unexpected(gone.error());
+      TRY(store_.remove_edit(edit_));
     }
     MonthKeeper keeper{store_, calendar_, site_.closing, system::time_zone_release()};
     std::vector<StoredMeter> stored;
     for (const MeterImport& meter : meters_) stored.push_back(meter.stored);
-    const auto until = known_until(stored);
-    if (!until) return tl::unexpected(until.error());
-    auto closed = keeper.close_due(stored, std::min(now, *until));
-    if (!closed) return tl::unexpected(closed.error());
-    outcome_.closed = std::move(*closed);
+    const auto until = TRY(known_until(stored));
+    outcome_.closed = TRY(keeper.close_due(stored, std::min(now, until)));
     return std::move(outcome_);
   }
 
@@ -60,21 +56,17 @@ class Import {
     if (auto is_file = system::require_file(file, "readings file"); !is_file) return is_file;
     system::Sha256 hash;
     if (auto added = hash.add_file(file); !added) return added;
-    const auto edit = store_.add_edit({.time = now,
-                                       .author = options_.author,
-                                       .reason = options_.reason,
-                                       .file = file.filename().string(),
-                                       .sha256 = hash.hex()});
-    if (!edit) return tl::unexpected(edit.error());
-    edit_ = *edit;
+    edit_ = TRY(store_.add_edit({.time = now,
+                                 .author = options_.author,
+                                 .reason = options_.reason,
+                                 .file = file.filename().string(),
+                                 .sha256 = hash.hex()}));
     for (const MeterConfig& config : site_.meters) {
       if (config.source == MeterSource::sum) continue;  // has no readings of its own
-      const auto number = store_.meter_number(config.meter.id, config.meter.interval);
-      if (!number) return tl::unexpected(number.error());
-      const auto months = store_.months(*number);
-      if (!months) return tl::unexpected(months.error());
-      MeterImport meter{.stored = {*number, config.meter}};
-      for (const StoredMonth& month : *months) meter.closed.insert(month.figure.month);
+      const auto number = TRY(store_.meter_number(config.meter.id, config.meter.interval));
+      const auto months = TRY(store_.months(number));
+      MeterImport meter{.stored = {number, config.meter}};
+      for (const StoredMonth& month : months) meter.closed.insert(month.figure.month);
       meters_.push_back(std::move(meter));
     }
     return {};
@@ -85,9 +77,8 @@ class Import {
   [[nodiscard]] Result<metering::Instant> known_until(std::span<const StoredMeter> meters) const {
     metering::Instant last{};
     for (const StoredMeter& meter : meters) {
-      const auto extent = store_.interval_extent(meter.number);
-      if (!extent) return tl::unexpected(extent.error());
-      if (*extent) last = std::max(last, (*extent)->end + meter.meter.interval);
+      const auto extent = TRY(store_.interval_extent(meter.number));
+      if (extent) last = std::max(last, extent->end + meter.meter.interval);
     }
     return last + site_.closing.watermark;
   }
@@ -168,9 +159,7 @@ Result<ImportOutcome> import_readings(Store& store, const SiteConfig& site,
                                       const ImportOptions& options, metering::Instant now) {
   std::optional<ImportOutcome> outcome;
   const auto kept = store.as_one([&]() -> Result<void> {
-    auto done = Import{store, site, calendar, options}.run(file, now);
-    if (!done) return tl::unexpected(done.error());
-    outcome = std::move(*done);
+    outcome = TRY(Import{store, site, calendar, options}.run(file, now));
     if (options.dry_run) return failure(ErrorCode::cancelled, "a rehearsal is undone");
     return {};
   });

@@ -101,9 +101,7 @@ Result<RestoredStore> restore_store(const SiteConfig& site, const std::filesyste
     if (!summary) restored.unreadable = summary.error().message;
   }
   if (dry_run) return restored;
-  auto replaced = restoration.keep(now);
-  if (!replaced) return tl::unexpected(replaced.error());
-  restored.replaced = std::move(*replaced);
+  restored.replaced = TRY(restoration.keep(now));
   return restored;
 }
 

@@ -9,9 +9,8 @@ namespace recald::daemon {
 Result<std::vector<StoredMeter>> stored_meters(Store& store, const SiteConfig& site) {
   std::vector<StoredMeter> meters;
   for (const MeterConfig& config : site.meters) {
-    const auto number = store.find_meter(config.meter.id);
-    if (!number) return tl::unexpected(number.error());
-    if (*number) meters.push_back({**number, config.meter});
+    const auto number = TRY(store.find_meter(config.meter.id));
+    if (number) meters.push_back({*number, config.meter});
   }
   if (meters.empty()) {
     return failure(

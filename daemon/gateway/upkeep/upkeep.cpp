@@ -33,8 +33,8 @@ Upkeep::Upkeep(Store& store, Worker& checker, StoreConfig config, metering::Loca
       calendar_(std::move(calendar)),
       tell_(std::move(tell)),
       rules_(rules),
-      reserve_(std::make_shared<system::ReservedSpace>(reserve_file(config_), rules.reserve_bytes)),
-      self_(std::make_shared<Upkeep*>(this)) {
+      reserve_(
+          std::make_shared<system::ReservedSpace>(reserve_file(config_), rules.reserve_bytes)) {
   store_.on_refusal([reserve = reserve_] { return reserve->give_up(); });
 }
 
@@ -69,9 +69,8 @@ void Upkeep::hold_reserve(Instant now) {
 Result<Upkeep::Progress> Upkeep::back_up(Instant now) {
   if (is_checking_) return Progress::done;
   if (!backup_) return begin_backup(now);
-  const auto is_whole = backup_->step(rules_.backup_pages);
-  if (!is_whole) return tl::unexpected(is_whole.error());
-  if (!*is_whole) return Progress::more;
+  const auto is_whole = TRY(backup_->step(rules_.backup_pages));
+  if (!is_whole) return Progress::more;
   check_backup(now);
   return Progress::done;
 }
@@ -81,9 +80,7 @@ void Upkeep::check_backup(Instant now) {
   auto damage = std::make_shared<Result<std::string>>();
   checker_.run(
       [backup = backup_, stop = stop_.get_token(), damage] { *damage = backup->check(stop); },
-      [weak = std::weak_ptr{self_}, damage, now] {
-        if (const auto self = weak.lock()) (*self)->end_backup(*damage, now);
-      });
+      alive_.guard([this, damage, now] { end_backup(*damage, now); }));
 }
 
 void Upkeep::end_backup(const Result<std::string>& damage, Instant now) {
@@ -118,19 +115,14 @@ Result<Upkeep::Progress> Upkeep::begin_backup(Instant now) {
   }
   const std::filesystem::path file = backup_file(config_, today);
   if (std::error_code unreadable; std::filesystem::exists(file, unreadable)) return Progress::done;
-  if (auto made = system::make_folder(config_.backup_folder); !made) {
-    return tl::unexpected(made.error());
-  }
-  auto begun = store_.begin_backup(file);
-  if (!begun) return tl::unexpected(begun.error());
-  backup_ = std::move(*begun);
+  TRY(system::make_folder(config_.backup_folder));
+  backup_ = TRY(store_.begin_backup(file));
   return Progress::more;
 }
 
 Result<Upkeep::Progress> Upkeep::delete_old(Instant now) {
-  const auto is_followed = store_.was_read_in(followed_until(now));
-  if (!is_followed) return tl::unexpected(is_followed.error());
-  const auto aged = *is_followed ? delete_aged(now) : Result<Progress>{Progress::done};
+  const auto is_followed = TRY(store_.was_read_in(followed_until(now)));
+  const auto aged = is_followed ? delete_aged(now) : Result<Progress>{Progress::done};
   if (!aged || *aged == Progress::more) return aged;
   for (const JobKind kind : {JobKind::calibration, JobKind::diagnosis}) {
     const auto results = delete_results(kind);
@@ -141,30 +133,25 @@ Result<Upkeep::Progress> Upkeep::delete_old(Instant now) {
 }
 
 Result<Upkeep::Progress> Upkeep::delete_aged(Instant now) {
-  const auto samples = store_.delete_samples(now - config_.raw_kept, rules_.rows);
-  if (!samples) return tl::unexpected(samples.error());
-  if (*samples == rules_.rows) return Progress::more;
-  const auto events = store_.delete_events(now - config_.events_kept, rules_.rows);
-  if (!events) return tl::unexpected(events.error());
-  return *events == rules_.rows ? Progress::more : Progress::done;
+  const auto samples = TRY(store_.delete_samples(now - config_.raw_kept, rules_.rows));
+  if (samples == rules_.rows) return Progress::more;
+  const auto events = TRY(store_.delete_events(now - config_.events_kept, rules_.rows));
+  return events == rules_.rows ? Progress::more : Progress::done;
 }
 
 /// Deletes one at a time, its files first: if killed in between, the job is still known and
 /// gets its turn again.
 Result<Upkeep::Progress> Upkeep::delete_results(JobKind kind) {
-  const auto job = store_.oldest_job_beyond(kind, config_.results_kept);
-  if (!job) return tl::unexpected(job.error());
-  if (!*job) return Progress::done;
-  const std::filesystem::path folder = job_folder(config_, kind, (*job)->number);
+  const auto job = TRY(store_.oldest_job_beyond(kind, config_.results_kept));
+  if (!job) return Progress::done;
+  const std::filesystem::path folder = job_folder(config_, kind, job->number);
   std::error_code error;
   std::filesystem::remove_all(folder, error);
   if (error) {
     return failure(ErrorCode::io_failed,
                    "folder '" + folder.string() + "' cannot be deleted: " + error.message());
   }
-  if (auto deleted = store_.delete_job((*job)->number); !deleted) {
-    return tl::unexpected(deleted.error());
-  }
+  TRY(store_.delete_job(job->number));
   return Progress::more;
 }
 

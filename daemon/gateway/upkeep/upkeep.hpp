@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
 #include "adapters/system/reserved_space.hpp"
@@ -76,7 +77,7 @@ class Upkeep {
   std::optional<metering::Day>
       damaged_on_;  ///< Day whose backup was damaged; the next day gets another.
   std::stop_source stop_;
-  std::shared_ptr<Upkeep*> self_;
+  Alive alive_;
   std::string reserve_failure_;  ///< The last failure reported.
   std::string backup_failure_;
   std::string deleting_failure_;

@@ -44,19 +44,16 @@ std::string difference(const MonthlyFigure& stored, const MonthlyFigure& again) 
 Result<void> check_months(Store& store, const SiteConfig& site,
                           const metering::LocalCalendar& calendar, const StoredMeter& meter,
                           Verification& verification) {
-  const auto months = store.months(meter.number);
-  if (!months) return tl::unexpected(months.error());
-  const auto waiting = store.reopened();
-  if (!waiting) return tl::unexpected(waiting.error());
-  for (const StoredMonth& month : *months) {
+  const auto months = TRY(store.months(meter.number));
+  const auto waiting = TRY(store.reopened());
+  for (const StoredMonth& month : months) {
     const bool is_reopened =
-        std::ranges::find(*waiting, MeterMonth{meter.number, month.figure.month}) != waiting->end();
+        std::ranges::find(waiting, MeterMonth{meter.number, month.figure.month}) != waiting.end();
     if (is_reopened || month.time_zone_release != system::time_zone_release()) continue;
-    const auto again =
-        stored_figure(store, calendar, site.closing, meter, month.figure.month, month.closed_at);
-    if (!again) return tl::unexpected(again.error());
+    const auto again = TRY(
+        stored_figure(store, calendar, site.closing, meter, month.figure.month, month.closed_at));
     ++verification.months_compared;
-    if (const std::string differs = difference(month.figure, *again); !differs.empty()) {
+    if (const std::string differs = difference(month.figure, again); !differs.empty()) {
       verification.problems.push_back(fmt::format("meter '{}', month {}: {}", meter.meter.id,
                                                   metering::to_string(month.figure.month),
                                                   differs));
@@ -74,10 +71,9 @@ Result<void> check_meter(Store& store, const SiteConfig& site,
         fmt::format("meter '{}': {}", meter.meter.id, states.error().message));
     return {};
   }
-  auto compared = compare_with_counter(store, meter);
-  if (!compared) return tl::unexpected(compared.error());
-  verification.days_compared += compared->days;
-  for (std::string& problem : compared->problems) {
+  auto compared = TRY(compare_with_counter(store, meter));
+  verification.days_compared += compared.days;
+  for (std::string& problem : compared.problems) {
     verification.problems.push_back(std::move(problem));
   }
   return check_months(store, site, calendar, meter, verification);
@@ -94,20 +90,16 @@ std::string damaged_file(std::string_view damage) {
 Result<Verification> verify_store(Store& store, const SiteConfig& site,
                                   const metering::LocalCalendar& calendar) {
   Verification verification;
-  auto checked = store.check();
-  if (!checked) return tl::unexpected(checked.error());
-  if (!checked->damage.empty()) {
-    verification.problems.push_back(damaged_file(checked->damage));
+  auto checked = TRY(store.check());
+  if (!checked.damage.empty()) {
+    verification.problems.push_back(damaged_file(checked.damage));
     return verification;  // the damage causes all other faults
   }
-  verification.problems = std::move(checked->problems);
-  verification.intervals = checked->intervals;
-  const auto meters = stored_meters(store, site);
-  if (!meters) return tl::unexpected(meters.error());
-  for (const StoredMeter& meter : *meters) {
-    if (auto done = check_meter(store, site, calendar, meter, verification); !done) {
-      return tl::unexpected(done.error());
-    }
+  verification.problems = std::move(checked.problems);
+  verification.intervals = checked.intervals;
+  const auto meters = TRY(stored_meters(store, site));
+  for (const StoredMeter& meter : meters) {
+    TRY(check_meter(store, site, calendar, meter, verification));
   }
   return verification;
 }
