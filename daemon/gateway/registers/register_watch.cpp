@@ -67,10 +67,7 @@ void add_site_drift(SiteFacts& facts) {
 }  // namespace
 
 RegisterWatch::RegisterWatch(Loop& loop, Served served, Publish publish)
-    : loop_(loop),
-      served_(std::move(served)),
-      publish_(std::move(publish)),
-      self_(std::make_shared<RegisterWatch*>(this)) {}
+    : loop_(loop), served_(std::move(served)), publish_(std::move(publish)) {}
 
 void RegisterWatch::start() {
   renew();
@@ -84,15 +81,11 @@ void RegisterWatch::look_again() {
 
 void RegisterWatch::look_anew_every_six_hours() {
   look_again();
-  loop_.after(kLookAnewEvery, [weak = std::weak_ptr{self_}] {
-    if (const auto self = weak.lock()) (*self)->look_anew_every_six_hours();
-  });
+  loop_.after(kLookAnewEvery, alive_.guard([this] { look_anew_every_six_hours(); }));
 }
 
 void RegisterWatch::renew() {
-  loop_.after(kRenewEvery, [weak = std::weak_ptr{self_}] {
-    if (const auto self = weak.lock()) (*self)->renew();
-  });
+  loop_.after(kRenewEvery, alive_.guard([this] { renew(); }));
   if (std::exchange(results_are_due_, false)) read_results();
   const GatewayStatus status = served_.status();
   publish_(facts_of(status));
@@ -134,9 +127,7 @@ void RegisterWatch::read_next() {
     MeterMonths& months = months_[config.meter.id];
     if (!months.has_news && !months.is_due) continue;
     read(config, months);
-    loop_.after(kBetweenMeters, [weak = std::weak_ptr{self_}] {
-      if (const auto self = weak.lock()) (*self)->read_next();
-    });
+    loop_.after(kBetweenMeters, alive_.guard([this] { read_next(); }));
     return;
   }
   is_reading_ = false;

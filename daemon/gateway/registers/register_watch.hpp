@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "daemon/gateway/registers/month_so_far.hpp"
 #include "daemon/gateway/registers/register_facts.hpp"
@@ -70,7 +71,7 @@ class RegisterWatch {
   bool results_are_due_ = true;
   bool is_reading_ = false;  ///< A step is on its way.
   std::size_t next_ = 0;     ///< Place in the site of the meter to look at next.
-  std::shared_ptr<RegisterWatch*> self_;
+  Alive alive_;
 };
 
 }  // namespace recald::daemon

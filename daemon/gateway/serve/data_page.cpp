@@ -35,12 +35,10 @@ Result<std::vector<MeterData>> read_months(const Served& served) {
   for (const MeterConfig& config : served.site.meters) {
     if (!config.is_stored()) continue;
     MeterData meter{&config, {}};
-    const auto number = served.store.find_meter(config.meter.id);
-    if (!number) return tl::unexpected(number.error());
-    const auto months = *number ? served.store.months(**number)
-                                : Result<std::vector<StoredMonth>>{std::vector<StoredMonth>{}};
-    if (!months) return tl::unexpected(months.error());
-    for (const StoredMonth& month : *months) meter.figures[month.figure.month] = month.figure;
+    const auto number = TRY(served.store.find_meter(config.meter.id));
+    const auto months = TRY(number ? served.store.months(*number)
+                                   : Result<std::vector<StoredMonth>>{std::vector<StoredMonth>{}});
+    for (const StoredMonth& month : months) meter.figures[month.figure.month] = month.figure;
     all.push_back(std::move(meter));
   }
   return all;

@@ -49,10 +49,9 @@ seconds history_step(const metering::TimeSpan& span, metering::Instant origin, s
 
 Result<History> read_history(Store& store, std::uint32_t meter, seconds interval,
                              const metering::TimeSpan& span, int points_max) {
-  const auto extent = store.interval_extent(meter);
-  if (!extent) return tl::unexpected(extent.error());
-  if (!*extent) return History{interval, {}};
-  const metering::TimeSpan there{(*extent)->begin, (*extent)->end + interval};
+  const auto extent = TRY(store.interval_extent(meter));
+  if (!extent) return History{interval, {}};
+  const metering::TimeSpan there{extent->begin, extent->end + interval};
   metering::TimeSpan asked{std::max(span.begin, there.begin), std::min(span.end, there.end)};
   History history{history_step(asked, span.begin, interval, points_max), {}};
   if (asked.end <= asked.begin) return history;
@@ -61,14 +60,13 @@ Result<History> read_history(Store& store, std::uint32_t meter, seconds interval
   asked.begin = span.begin + (asked.begin - span.begin) / step * step;
   std::vector<Sum> sums(
       static_cast<std::size_t>((asked.end - asked.begin + step - seconds{1}) / step));
-  const auto read = store.for_each_interval(meter, asked, [&](const StoredInterval& one) {
+  TRY(store.for_each_interval(meter, asked, [&](const StoredInterval& one) {
     if (one.reading.validity != metering::Validity::ok || !std::isfinite(one.reading.mean_kW)) {
       return;
     }
     sums[static_cast<std::size_t>((one.reading.start - asked.begin) / step)].add(
         one.reading.mean_kW);
-  });
-  if (!read) return tl::unexpected(read.error());
+  }));
   const double expected = static_cast<double>(step.count()) / static_cast<double>(interval.count());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const Sum& sum = sums[i];

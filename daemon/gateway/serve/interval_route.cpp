@@ -56,30 +56,28 @@ Checked<Queried> queried(const SiteConfig& site, const http::Request& request) {
     return Queried{stored_meter(*site.find_sensor(channel->sensor), *channel), channel->quantity,
                    true};
   }
-  const auto meter = meter_of(site, id);
-  if (!meter) return tl::unexpected(meter.error());
-  if ((*meter)->role == MeterRole::weather) {
+  const auto meter = TRY(meter_of(site, id));
+  if (meter->role == MeterRole::weather) {
     return refusal(400, "invalid_value",
                    fmt::format("'{}' is a weather sensor and has separate intervals for each "
                                "quantity; ask for {}.dry_bulb_C, for example",
                                id, id),
                    "meter");
   }
-  return Queried{(*meter)->meter, nullptr, (*meter)->is_stored()};
+  return Queried{meter->meter, nullptr, meter->is_stored()};
 }
 
 Result<Page> read_page(Store& store, std::uint32_t number, const Queried& asked, TimeSpan span,
                        int limit) {
   const metering::Meter& meter = asked.meter;
   Page page;
-  const auto extent = store.interval_extent(number);
-  if (!extent) return tl::unexpected(extent.error());
-  if (!*extent) return page;
-  span.begin = std::max(span.begin, (*extent)->begin);
-  span.end = std::min(span.end, (*extent)->end + meter.interval);
+  const auto extent = TRY(store.interval_extent(number));
+  if (!extent) return page;
+  span.begin = std::max(span.begin, extent->begin);
+  span.end = std::min(span.end, extent->end + meter.interval);
   const auto piece = meter.interval * std::max(limit, kPieceMin);
   for (Instant at = span.begin; at < span.end && !page.next; at += piece) {
-    const auto read = store.for_each_interval(
+    TRY(store.for_each_interval(
         number, {at, std::min(at + piece, span.end)}, [&](const StoredInterval& interval) {
           if (page.next) return;
           if (page.count == limit) {
@@ -89,8 +87,7 @@ Result<Page> read_page(Store& store, std::uint32_t number, const Queried& asked,
           if (page.count++ > 0) page.intervals += ',';
           page.intervals += asked.quantity != nullptr ? weather_interval_json(interval)
                                                       : interval_json(interval, meter.interval);
-        });
-    if (!read) return tl::unexpected(read.error());
+        }));
   }
   return page;
 }

@@ -40,26 +40,17 @@ Checked<void> take_cursor(MonthQuery& query, const Served& served, const http::R
 }
 
 Checked<MonthQuery> parse(const Served& served, const http::Request& request) {
-  if (const auto checked = has_only(request, {"meter", "from", "to", "limit", "cursor"});
-      !checked) {
-    return tl::unexpected(checked.error());
-  }
+  TRY(has_only(request, {"meter", "from", "to", "limit", "cursor"}));
   MonthQuery query;
-  const auto meter = queried_meter(served.site, request);
-  if (!meter) return tl::unexpected(meter.error());
-  const auto from = month_of(request, "from");
-  if (!from) return tl::unexpected(from.error());
-  const auto to = month_of(request, "to");
-  if (!to) return tl::unexpected(to.error());
-  const auto limit = limit_of(request);
-  if (!limit) return tl::unexpected(limit.error());
-  query.meter = *meter;
-  query.from = *from;
-  query.to = *to;
-  query.limit = *limit;
-  if (const auto taken = take_cursor(query, served, request); !taken) {
-    return tl::unexpected(taken.error());
-  }
+  const auto meter = TRY(queried_meter(served.site, request));
+  const auto from = TRY(month_of(request, "from"));
+  const auto to = TRY(month_of(request, "to"));
+  const auto limit = TRY(limit_of(request));
+  query.meter = meter;
+  query.from = from;
+  query.to = to;
+  query.limit = limit;
+  TRY(take_cursor(query, served, request));
   return query;
 }
 

@@ -62,11 +62,9 @@ Checked<void> has_only(const http::Request& request,
 
 Checked<metering::TimeSpan> span_of(const http::Request& request,
                                     const metering::LocalCalendar& calendar) {
-  const auto from = instant_of(request, "from", calendar);
-  if (!from) return tl::unexpected(from.error());
-  const auto to = instant_of(request, "to", calendar);
-  if (!to) return tl::unexpected(to.error());
-  const metering::TimeSpan span{from->value_or(Instant{}), to->value_or(metering::kLatestInstant)};
+  const auto from = TRY(instant_of(request, "from", calendar));
+  const auto to = TRY(instant_of(request, "to", calendar));
+  const metering::TimeSpan span{from.value_or(Instant{}), to.value_or(metering::kLatestInstant)};
   if (span.end < span.begin) {
     return refusal(400, "invalid_value", "'to' is before 'from'", "to");
   }
@@ -104,9 +102,8 @@ Checked<std::optional<metering::Month>> month_of(const http::Request& request,
 
 Checked<int> limit_of(const http::Request& request) {
   constexpr std::string_view kWhat = "a whole number from 1 to 10000";
-  const auto limit = whole_number_of(request, "limit", kWhat);
-  if (!limit) return tl::unexpected(limit.error());
-  const std::int64_t value = limit->value_or(kLimitUsual);
+  const auto limit = TRY(whole_number_of(request, "limit", kWhat));
+  const std::int64_t value = limit.value_or(kLimitUsual);
   if (value < 1 || value > kLimitMax) {
     return refusal(400, "invalid_value", fmt::format("'limit' is {}; write {}", value, kWhat),
                    "limit");

@@ -123,16 +123,14 @@ class Elements {
                          place);
       }
     }
-    const auto start = start_of(element, place + ".time");
-    if (!start) return tl::unexpected(start.error());
-    const auto mean_kW = mean_of(element, place + ".value");
-    if (!mean_kW) return tl::unexpected(mean_kW.error());
-    Reading reading{.meter = 0, .start = *start, .mean_kW = *mean_kW};
-    if (std::isnan(*mean_kW)) {
+    const auto start = TRY(start_of(element, place + ".time"));
+    const auto mean_kW = TRY(mean_of(element, place + ".value"));
+    Reading reading{.meter = 0, .start = start, .mean_kW = mean_kW};
+    if (std::isnan(mean_kW)) {
       reading.validity = metering::Validity::missing;
       return reading;
     }
-    reading.reasons = doubt_of(*mean_kW);
+    reading.reasons = doubt_of(mean_kW);
     if (reading.reasons != metering::Reason::none) reading.validity = metering::Validity::suspect;
     return reading;
   }
@@ -225,38 +223,34 @@ Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& si
       return malformed(fmt::format("{} is not a known key", csv::in_quotes(key)), key);
     }
   }
-  const auto meter = pushed_meter(json, site);
-  if (!meter) return tl::unexpected(meter.error());
-  const auto unit = unit_of(json, **meter);
-  if (!unit) return tl::unexpected(unit.error());
+  const auto meter = TRY(pushed_meter(json, site));
+  const auto unit = TRY(unit_of(json, *meter));
   const std::string stamps =
       json.contains("stamps") ? text_in(json, "stamps").value_or("") : "start";
   if (stamps != "start" && stamps != "end") {
     return refusal(400, "invalid_value", R"('stamps' is neither "start" nor "end")", "stamps");
   }
-  if (stamps == "end" && (*meter)->values == weather::RecordedValues::instant) {
+  if (stamps == "end" && meter->values == weather::RecordedValues::instant) {
     return refusal(400, "invalid_value",
                    fmt::format("sensor '{}' has values = \"instant\": 'time' is when a value was "
                                "measured, so leave out 'stamps'",
-                               (*meter)->meter.id),
+                               meter->meter.id),
                    "stamps");
   }
   const auto list = json.find("readings");
   if (list == json.end() || !list->is_array() || list->empty()) {
     return malformed("'readings' is needed, with at least one", "readings");
   }
-  auto correction = correction_in(json, body);
-  if (!correction) return tl::unexpected(correction.error());
-  const Elements elements{**meter, site.closing.closing.validation, *unit, stamps == "end", now};
-  PushedReadings pushed{.meter = *meter,
-                        .quantity = unit->quantity,
+  auto correction = TRY(correction_in(json, body));
+  const Elements elements{*meter, site.closing.closing.validation, unit, stamps == "end", now};
+  PushedReadings pushed{.meter = meter,
+                        .quantity = unit.quantity,
                         .readings = {},
-                        .correction = std::move(*correction)};
+                        .correction = std::move(correction)};
   pushed.readings.reserve(list->size());
   for (std::size_t i = 0; i < list->size(); ++i) {
-    auto reading = elements.read((*list)[i], i);
-    if (!reading) return tl::unexpected(reading.error());
-    pushed.readings.push_back(*reading);
+    auto reading = TRY(elements.read((*list)[i], i));
+    pushed.readings.push_back(reading);
   }
   return pushed;
 }

@@ -12,9 +12,7 @@ Result<http::ServerOptions> server_options(const HttpConfig& config) {
                               .open_paths = {"/healthz", "/readyz"},
                               .origins = {config.origins.begin(), config.origins.end()}};
   if (!config.token_file.empty()) {
-    auto token = http::read_token_file(config.token_file);
-    if (!token) return tl::unexpected(token.error());
-    options.token = std::move(*token);
+    options.token = TRY(http::read_token_file(config.token_file));
   }
   if (!config.certificate_file.empty()) {
     options.tls = http::TlsFiles{config.certificate_file, config.key_file};
@@ -24,9 +22,8 @@ Result<http::ServerOptions> server_options(const HttpConfig& config) {
 
 Result<std::unique_ptr<http::Server>> serve_site(boost::asio::io_context& context,
                                                  const HttpConfig& config, Served served) {
-  const auto options = server_options(config);
-  if (!options) return tl::unexpected(options.error());
-  return http::Server::listen(context, *options,
+  const auto options = TRY(server_options(config));
+  return http::Server::listen(context, options,
                               [served = std::move(served)](const http::Request& request) {
                                 return answer(served, request);
                               });
