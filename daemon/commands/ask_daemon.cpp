@@ -39,34 +39,30 @@ Result<Question> question_for_site(const SiteConfig& site) {
                   .port = http.port};
   question.options.trusted_certificate = http.certificate_file;
   if (!http.token_file.empty()) {
-    const auto token = http::read_token_file(http.token_file);
-    if (!token) return tl::unexpected(token.error());
-    question.options.token = *token;
+    question.options.token = TRY(http::read_token_file(http.token_file));
   }
   return question;
 }
 
 tl::expected<Question, std::vector<std::string>> question_for_file(
     const std::filesystem::path& file) {
-  const auto site = load_site(file);
-  if (!site) return tl::unexpected(site.error());
-  auto question = question_for_site(*site);
+  const auto site = TRY(load_site(file));
+  auto question = question_for_site(site);
   if (!question) return tl::unexpected(std::vector{question.error().message});
   return std::move(*question);
 }
 
 Result<nlohmann::ordered_json> ask(Question question, const std::string& path) {
   question.url.path = path;
-  const auto response = http::get(question.url, question.options);
-  if (!response) return tl::unexpected(response.error());
-  auto json = nlohmann::ordered_json::parse(response->body, nullptr, false);
-  if (response->status == 401) {
+  const auto response = TRY(http::get(question.url, question.options));
+  auto json = nlohmann::ordered_json::parse(response.body, nullptr, false);
+  if (response.status == 401) {
     return failure(ErrorCode::invalid_value,
                    question.url.text() + " needs a token; name its file with --token-file");
   }
-  if (!json.is_object() || (response->status != 200 && response->status != 503)) {
+  if (!json.is_object() || (response.status != 200 && response.status != 503)) {
     return failure(ErrorCode::malformed, fmt::format("the server at {} is not recald (status {})",
-                                                     question.url.text(), response->status));
+                                                     question.url.text(), response.status));
   }
   return json;
 }

@@ -46,19 +46,16 @@ tl::expected<ModelledSite, int> open_with_runs(const CalibrateArguments& argumen
 tl::expected<FinishedCalibration, int> calibrate_aloud(const CalibrateArguments& arguments,
                                                        const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
-  auto calibration = calibration_options(arguments, console);
-  if (!calibration) return tl::unexpected(calibration.error());
-  calibration->design_runs = arguments.design_runs;
+  auto calibration = TRY(calibration_options(arguments, console));
+  calibration.design_runs = arguments.design_runs;
   const CalibrateOptions options{
-      std::move(*calibration), arguments.prior_sensitivity,
+      std::move(calibration), arguments.prior_sensitivity,
       arguments.discrepancy == "seed" ? DiscrepancyForm::seed : DiscrepancyForm::sound};
-  auto modelled = open_with_runs(arguments, console);
-  if (!modelled) return tl::unexpected(modelled.error());
+  auto modelled = TRY(open_with_runs(arguments, console));
 
   const InterruptGuard guard;
   ProgressLine line{console};
-  auto done =
-      finish_calibration(std::move(*modelled), options, run_context(arguments, guard, line));
+  auto done = finish_calibration(std::move(modelled), options, run_context(arguments, guard, line));
   if (!done) return tl::unexpected(console.fail(done.error()));
   done->modelled.facts.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

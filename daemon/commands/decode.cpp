@@ -108,14 +108,13 @@ Result<Decoding> understand(const DecodeArguments& arguments, modbus::RegisterMa
     if (!is_relative) decoding.address = asked->request.address;
   }
   if (!arguments.at.empty()) {
-    const auto at = parse_address(arguments.at);
-    if (!at) return tl::unexpected(at.error());
-    if (decoding.address && *decoding.address != *at) {
+    const auto at = TRY(parse_address(arguments.at));
+    if (decoding.address && *decoding.address != at) {
       return failure(ErrorCode::invalid_value,
-                     fmt::format("--at says {} but --request says {}; give only one of them", *at,
+                     fmt::format("--at says {} but --request says {}; give only one of them", at,
                                  *decoding.address));
     }
-    decoding.address = *at;
+    decoding.address = at;
   }
   place_fields(decoding);
   return decoding;

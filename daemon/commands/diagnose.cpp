@@ -43,9 +43,7 @@ Result<diagnosis::MonthlyVote> ask_energyplus(const ModelledSite& modelled,
                                               std::uint64_t seed, const Console& console) {
   ModelledSite on_runs = modelled;
   SiteConfig& site = on_runs.site.config;
-  if (auto chosen = choose_model(site, ModelKind::energyplus); !chosen) {
-    return tl::unexpected(chosen.error());
-  }
+  TRY(choose_model(site, ModelKind::energyplus));
   for (const std::string& output : site.model->outputs) {
     if (site.meter_index(output)) continue;
     return failure(ErrorCode::not_found,
@@ -53,9 +51,7 @@ Result<diagnosis::MonthlyVote> ask_energyplus(const ModelledSite& modelled,
                                "output",
                                output));
   }
-  if (auto taken = take_in_effects(version, *site.model); !taken) {
-    return tl::unexpected(taken.error());
-  }
+  TRY(take_in_effects(version, *site.model));
   if (!has_all_runs(site)) {
     console.err << fmt::format("The EnergyPlus model gets the effect too: {} runs into '{}'.\n",
                                site.model->energyplus->runs,

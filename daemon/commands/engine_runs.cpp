@@ -81,8 +81,7 @@ tl::expected<ModelledSite, int> with_runs(
   if (!modelled) return modelled;
   const SiteConfig& site = modelled->site.config;
   if (!site.model || !site.model->energyplus || has_all_runs(site)) return modelled;
-  const auto made = make_runs_aloud(*modelled, {.seed = seed}, threads, console);
-  if (!made) return tl::unexpected(made.error());
+  TRY(make_runs_aloud(*modelled, {.seed = seed}, threads, console));
   // What the data show was printed when the site was first opened.
   return open({console.out, console.err, console.is_terminal, Console::Detail::little});
 }

@@ -36,39 +36,31 @@ Result<std::filesystem::path> write_mild_weather(const OpenSite& site,
   mild.hours.assign(
       24 * 369,
       {.dry_bulb_C = 15.0, .rel_humidity_pct = 60.0, .wind_speed_m_s = 2.0, .ghi_W_m2 = 0.0});
-  const auto text = epw::epw_text(mild, kTrialYear, *site.config.location, site.calendar, {}, "-");
-  if (!text) return tl::unexpected(text.error());
+  const auto text =
+      TRY(epw::epw_text(mild, kTrialYear, *site.config.location, site.calendar, {}, "-"));
   const std::filesystem::path file = folder / "mild.epw";
-  if (auto written = system::write_file(file, *text); !written) {
-    return tl::unexpected(written.error());
-  }
+  TRY(system::write_file(file, text));
   return file;
 }
 
 /// Runs a day of the model, which tells its meters and the sizes of its plant.
 Result<Contents> contents_of(const OpenSite& site, const EnergyPlusConfig& config,
                              const std::function<bool()>& keep_going) {
-  auto opened = open_energyplus(config);
-  if (!opened) return tl::unexpected(opened.error());
-  const auto scratch = system::ScratchFolder::make();
-  if (!scratch) return tl::unexpected(scratch.error());
-  const auto weather = write_mild_weather(site, scratch->path());
-  if (!weather) return tl::unexpected(weather.error());
+  auto opened = TRY(open_energyplus(config));
+  const auto scratch = TRY(system::ScratchFolder::make());
+  const auto weather = TRY(write_mild_weather(site, scratch.path()));
   const metering::Day day = std::chrono::year{kTrialYear} / 1 / 4;
-  energyplus::Json objects = opened->model.objects;
+  energyplus::Json objects = opened.model.objects;
   energyplus::prepare_objects({.first = day, .last = day, .meters = {}}, objects);
   energyplus::ask_for_meters(objects);
-  const std::filesystem::path folder = scratch->path() / "run";
-  const auto sql = energyplus::simulate(objects, *weather, folder, opened->program,
-                                        {.time_max = config.time_max}, keep_going);
-  if (!sql) return tl::unexpected(sql.error());
-  auto meters = energyplus::what_is_reported(folder);
-  if (!meters) return tl::unexpected(meters.error());
-  const auto sizes = energyplus::read_component_sizes(*sql);
-  if (!sizes) return tl::unexpected(sizes.error());
-  energyplus::freeze_sizes(*sizes, opened->model.objects);
-  return Contents{std::move(*meters), energyplus::what_could_be_varied(opened->model),
-                  energyplus::known_parameters(opened->model)};
+  const std::filesystem::path folder = scratch.path() / "run";
+  const auto sql = TRY(energyplus::simulate(objects, weather, folder, opened.program,
+                                            {.time_max = config.time_max}, keep_going));
+  auto meters = TRY(energyplus::what_is_reported(folder));
+  const auto sizes = TRY(energyplus::read_component_sizes(sql));
+  energyplus::freeze_sizes(sizes, opened.model.objects);
+  return Contents{std::move(meters), energyplus::what_could_be_varied(opened.model),
+                  energyplus::known_parameters(opened.model)};
 }
 
 std::string contents_words(const EnergyPlusConfig& config, const Contents& contents) {

@@ -24,14 +24,12 @@ Result<TimeSpan> asked_span(const ExportArguments& arguments,
     return failure(ErrorCode::malformed, fmt::format("{}: {}", option, day.error().message));
   };
   if (!arguments.from.empty()) {
-    const auto from = day_span("--from", arguments.from);
-    if (!from) return tl::unexpected(from.error());
-    span.begin = from->begin;
+    const auto from = TRY(day_span("--from", arguments.from));
+    span.begin = from.begin;
   }
   if (!arguments.to.empty()) {
-    const auto to = day_span("--to", arguments.to);
-    if (!to) return tl::unexpected(to.error());
-    span.end = to->end;
+    const auto to = TRY(day_span("--to", arguments.to));
+    span.end = to.end;
   }
   if (span.begin < span.end) return span;
   return failure(ErrorCode::invalid_value,

@@ -17,17 +17,16 @@ Result<regression::DesignData> chosen_data(const doe::DesignFolder& design,
                                            const std::string& parameters) {
   regression::DesignData data = design_data(design);
   if (parameters == "all") return data;
-  const auto chosen = named_parameters(design.parameters, parameters);
-  if (!chosen) return tl::unexpected(chosen.error());
-  data.theta = data.theta(Eigen::all, *chosen).eval();
+  const auto chosen = TRY(named_parameters(design.parameters, parameters));
+  data.theta = data.theta(Eigen::all, chosen).eval();
   data.parameters.clear();
-  for (const int j : *chosen) {
+  for (const int j : chosen) {
     data.parameters.push_back(design.parameters[static_cast<std::size_t>(j)].name);
   }
   const auto place_of = [&](int parameter) {
-    return static_cast<int>(std::ranges::find(*chosen, parameter) - chosen->begin());
+    return static_cast<int>(std::ranges::find(chosen, parameter) - chosen.begin());
   };
-  const int count = static_cast<int>(chosen->size());
+  const int count = static_cast<int>(chosen.size());
   std::vector<regression::ParameterCap> caps;
   for (const regression::ParameterCap& cap : data.caps) {
     const regression::ParameterCap moved{place_of(cap.parameter), place_of(cap.under), cap.gap};

@@ -15,11 +15,10 @@ constexpr std::size_t kTextsShown = 3;  // of them as they stand in the file
 }  // namespace
 
 tl::expected<OpenSite, std::vector<std::string>> open_site(const std::filesystem::path& file) {
-  auto config = load_site(file);
-  if (!config) return tl::unexpected(config.error());
-  auto calendar = metering::LocalCalendar::open(config->timezone);
+  auto config = TRY(load_site(file));
+  auto calendar = metering::LocalCalendar::open(config.timezone);
   if (!calendar) return tl::unexpected(std::vector{calendar.error().message});
-  return OpenSite{std::move(*config), std::move(*calendar)};
+  return OpenSite{std::move(config), std::move(*calendar)};
 }
 
 std::string nowhere_to_push(const SiteConfig& site, const MeterConfig& meter) {

@@ -103,7 +103,7 @@ class Ingester {
   Result<void> serve(postgres::Connection& record) {
     if (auto checked = record::check_schema(record); !checked) return checked;
     Arrivals arrivals;
-    auto connection = open_broker(
+    auto connection = TRY(open_broker(
         broker_,
         {.will = {},
          .birth = {},
@@ -113,20 +113,18 @@ class Ingester {
         [&](bool is_connected, const std::string& why) {
           if (is_connected && why.empty()) arrivals.connected();
           if (!why.empty()) tell_(why);
-        });
-    if (!connection) return tl::unexpected(connection.error());
+        }));
     tell_("the record is there: batches of gateways are taken");
     while (!stop_.stop_requested()) {
       if (arrivals.is_new_connection()) {
-        if (auto done = tell_all(record, **connection); !done) return done;
+        if (auto done = tell_all(record, *connection); !done) return done;
       }
       std::vector<mqtt::Message> answers;
       for (const mqtt::Message& message : arrivals.take()) {
-        auto answer = take_safely(record, message);
-        if (!answer) return tl::unexpected(answer.error());
-        if (!answer->topic.empty()) answers.push_back(std::move(*answer));
+        auto answer = TRY(take_safely(record, message));
+        if (!answer.topic.empty()) answers.push_back(std::move(answer));
       }
-      publish(**connection, answers);
+      publish(*connection, answers);
     }
     return {};
   }
@@ -134,10 +132,9 @@ class Ingester {
  private:
   /// Everything that was retained may be gone, and gateways may wait for a word.
   Result<void> tell_all(postgres::Connection& record, mqtt::Connection& connection) {
-    const auto all = record::watermarks(record);
-    if (!all) return tl::unexpected(all.error());
+    const auto all = TRY(record::watermarks(record));
     std::vector<mqtt::Message> messages;
-    for (const auto& [site, watermark] : *all) messages.push_back(told(site, watermark));
+    for (const auto& [site, watermark] : all) messages.push_back(told(site, watermark));
     publish(connection, messages);
     return {};
   }
@@ -218,9 +215,8 @@ IngestCounts ingest(const RecordConfig& record, const BrokerConfig& broker, cons
   keep_trying(
       "no batches are taken, and gateways keep what they have",
       [&]() -> Result<void> {
-        auto connection = open_record(record);
-        if (!connection) return tl::unexpected(connection.error());
-        return ingester.serve(**connection);
+        auto connection = TRY(open_record(record));
+        return ingester.serve(*connection);
       },
       tell, stop);
   return counts;

@@ -85,9 +85,7 @@ std::string result_address(const std::string& site, JobKind kind, metering::Mont
 }
 
 Checked<PortfolioFilter> filter_of(const Request& request) {
-  if (auto known = has_only(request, {"use", "climate", "state", "month"}); !known) {
-    return tl::unexpected(known.error());
-  }
+  TRY(has_only(request, {"use", "climate", "state", "month"}));
   PortfolioFilter filter{.use = text_of(request, "use").value_or(""),
                          .climate = text_of(request, "climate").value_or(""),
                          .state = text_of(request, "state").value_or("")};
@@ -433,10 +431,9 @@ Response result_file(const FleetServed& served, const std::string& rest) {
 Result<std::vector<record::FleetJob>> jobs_that_fit(const FleetServed& served,
                                                     const PortfolioFilter& filter,
                                                     std::optional<metering::Month> month) {
-  const auto portfolio = read_portfolio(served.record, served.now());
-  if (!portfolio) return tl::unexpected(portfolio.error());
+  const auto portfolio = TRY(read_portfolio(served.record, served.now()));
   record::RerunWhat what{.month = month};
-  for (const PortfolioRow& row : portfolio->rows) {
+  for (const PortfolioRow& row : portfolio.rows) {
     if (fits(row, filter)) what.sites.push_back(row.site.site.id);
   }
   if (what.sites.empty()) return std::vector<record::FleetJob>{};  // none would mean all

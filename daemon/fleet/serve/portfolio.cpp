@@ -185,18 +185,14 @@ Portfolio portfolio_of(std::vector<record::RecordedSite> sites,
 
 Result<Portfolio> read_portfolio(postgres::Connection& record, metering::Instant now,
                                  const std::string& site) {
-  auto sites = record::sites(record);
-  if (!sites) return tl::unexpected(sites.error());
+  auto sites = TRY(record::sites(record));
   if (!site.empty()) {
-    std::erase_if(*sites, [&](const record::RecordedSite& one) { return one.site.id != site; });
+    std::erase_if(sites, [&](const record::RecordedSite& one) { return one.site.id != site; });
   }
-  const auto calibrations = record::newest_results(record, JobKind::calibration, site);
-  if (!calibrations) return tl::unexpected(calibrations.error());
-  const auto diagnoses = record::newest_results(record, JobKind::diagnosis, site);
-  if (!diagnoses) return tl::unexpected(diagnoses.error());
-  const auto troubled = record::troubled_jobs(record);
-  if (!troubled) return tl::unexpected(troubled.error());
-  return portfolio_of(std::move(*sites), *calibrations, *diagnoses, *troubled, now);
+  const auto calibrations = TRY(record::newest_results(record, JobKind::calibration, site));
+  const auto diagnoses = TRY(record::newest_results(record, JobKind::diagnosis, site));
+  const auto troubled = TRY(record::troubled_jobs(record));
+  return portfolio_of(std::move(sites), calibrations, diagnoses, troubled, now);
 }
 
 }  // namespace recald::daemon

@@ -82,15 +82,13 @@ class Jobs {
   Result<void> work(postgres::Connection& record) {
     if (auto checked = record::check_schema(record); !checked) return checked;
     while (!stop_.stop_requested()) {
-      const auto job = record::lease(record, loop_.name, loop_.rules);
-      if (!job) return tl::unexpected(job.error());
-      if (*job) {
-        if (auto done = do_one(record, **job); !done) return done;
+      const auto job = TRY(record::lease(record, loop_.name, loop_.rules));
+      if (job) {
+        if (auto done = do_one(record, *job); !done) return done;
         continue;
       }
       if (loop_.ends_when_idle) return {};
-      const auto called = record.wait_for(record::kJobChannel, loop_.look_every, stop_);
-      if (!called) return tl::unexpected(called.error());
+      TRY(record.wait_for(record::kJobChannel, loop_.look_every, stop_));
     }
     return {};
   }
@@ -209,9 +207,8 @@ int do_jobs(const JobLoop& loop, const TellWords& tell, const std::stop_token& s
   keep_trying(
       "no jobs are done",
       [&]() -> Result<void> {
-        auto connection = open_record(loop.record);
-        if (!connection) return tl::unexpected(connection.error());
-        return jobs.work(**connection);
+        auto connection = TRY(open_record(loop.record));
+        return jobs.work(*connection);
       },
       tell, stop);
   return jobs.count();

@@ -50,9 +50,8 @@ Result<std::map<std::string, std::string>> files_below(const fs::path& folder,
   std::error_code ignored;
   for (const auto& entry : fs::recursive_directory_iterator{folder, ignored}) {
     if (!entry.is_regular_file(ignored)) continue;
-    auto bytes = system::read_file(entry.path());
-    if (!bytes) return tl::unexpected(bytes.error());
-    files[entry.path().lexically_relative(base).generic_string()] = std::move(*bytes);
+    auto bytes = TRY(system::read_file(entry.path()));
+    files[entry.path().lexically_relative(base).generic_string()] = std::move(bytes);
   }
   return files;
 }
@@ -71,9 +70,8 @@ struct Task {
 };
 
 Result<Json> read_json(const fs::path& file) {
-  const auto text = system::read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  Json json = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  const auto text = TRY(system::read_file(file));
+  Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (json.is_discarded()) {
     return failure(ErrorCode::malformed, fmt::format("'{}' is no JSON", file.string()));
   }
@@ -81,20 +79,18 @@ Result<Json> read_json(const fs::path& file) {
 }
 
 Result<Task> read_task(const fs::path& folder) {
-  const auto json = read_json(folder / kJob);
-  if (!json) return tl::unexpected(json.error());
-  auto config = load_site(folder / kSiteFolder / json->value("site_file", ""));
+  const auto json = TRY(read_json(folder / kJob));
+  auto config = load_site(folder / kSiteFolder / json.value("site_file", ""));
   if (!config) return failure(ErrorCode::invalid_value, config.error().front());
-  auto calendar = metering::LocalCalendar::open(config->timezone);
-  if (!calendar) return tl::unexpected(calendar.error());
-  const metering::Instant now{std::chrono::seconds{json->value("now_s", std::int64_t{0})}};
+  auto calendar = TRY(metering::LocalCalendar::open(config->timezone));
+  const metering::Instant now{std::chrono::seconds{json.value("now_s", std::int64_t{0})}};
   config->store.file = folder / kWork / kStore;
-  const bool is_diagnosis = json->value("kind", "") == name_of(JobKind::diagnosis);
-  return Task{.site = {std::move(*config), std::move(*calendar)},
+  const bool is_diagnosis = json.value("kind", "") == name_of(JobKind::diagnosis);
+  return Task{.site = {std::move(*config), std::move(calendar)},
               .job = {.number = kNumber,
                       .kind = is_diagnosis ? JobKind::diagnosis : JobKind::calibration,
                       .state = JobState::running,
-                      .asked_by = json->value("asked_by", ""),
+                      .asked_by = json.value("asked_by", ""),
                       .asked = now,
                       .started = now,
                       .ended = {},
@@ -134,18 +130,15 @@ bool is_kept(const std::string& name) { return !name.starts_with("draws"); }
 
 Result<void> fill_work_folder(postgres::Connection& record, const record::FleetJob& job,
                               const fs::path& folder) {
-  const auto site = record::site_of_version(record, job.site, job.site_version);
-  if (!site) return tl::unexpected(site.error());
-  const auto state = record::state_before(record, job);
-  if (!state) return tl::unexpected(state.error());
-  if (auto written = write_below(folder / kSiteFolder, site->files); !written) return written;
+  const auto site = TRY(record::site_of_version(record, job.site, job.site_version));
+  const auto state = TRY(record::state_before(record, job));
+  if (auto written = write_below(folder / kSiteFolder, site.files); !written) return written;
   if (auto made = system::make_folder(folder / kWork); !made) return made;
-  if (auto written = write_below(folder / kWork, *state); !written) return written;
-  const std::string task = job_json(job, site->site_file).dump(2) + "\n";
+  if (auto written = write_below(folder / kWork, state); !written) return written;
+  const std::string task = job_json(job, site.site_file).dump(2) + "\n";
   if (auto written = system::write_file(folder / kJob, task); !written) return written;
-  auto opened = stores::open_checked(folder / kWork / kStore, {}, job.now);
-  if (!opened) return tl::unexpected(opened.error());
-  return record::copy_into(*opened->store, record, job.site, job.until_seq);
+  auto opened = TRY(stores::open_checked(folder / kWork / kStore, {}, job.now));
+  return record::copy_into(*opened.store, record, job.site, job.until_seq);
 }
 
 Result<void> do_work(const fs::path& folder) {
@@ -155,27 +148,23 @@ Result<void> do_work(const fs::path& folder) {
 }
 
 Result<WorkOutcome> read_outcome(const fs::path& folder) {
-  const auto json = read_json(folder / kOutcome);
-  if (!json) return tl::unexpected(json.error());
-  WorkOutcome outcome{.failed = json->value("failed", ""),
-                      .result = {.accepted = json->value("accepted", false),
-                                 .named = json->value("named", false),
-                                 .message = json->value("message", "")}};
+  const auto json = TRY(read_json(folder / kOutcome));
+  WorkOutcome outcome{.failed = json.value("failed", ""),
+                      .result = {.accepted = json.value("accepted", false),
+                                 .named = json.value("named", false),
+                                 .message = json.value("message", "")}};
   if (!outcome.failed.empty()) return outcome;
   record::FleetResult& result = outcome.result;
-  result.summary = json->at("summary").dump();
-  if (const Json& next = json->at("next"); !next.is_null()) {
+  result.summary = json.at("summary").dump();
+  if (const Json& next = json.at("next"); !next.is_null()) {
     result.next = next == name_of(JobKind::diagnosis) ? JobKind::diagnosis : JobKind::calibration;
-    result.next_asked_by = json->value("next_asked_by", "");
+    result.next_asked_by = json.value("next_asked_by", "");
   }
-  const fs::path results = folder / json->value("folder", "");
-  auto files = files_below(results, results);
-  if (!files) return tl::unexpected(files.error());
-  std::erase_if(*files, [](const auto& one) { return !is_kept(one.first); });
-  result.files = std::move(*files);
-  auto state = files_below(folder / kWork / json->value("versions", ""), folder / kWork);
-  if (!state) return tl::unexpected(state.error());
-  result.state = std::move(*state);
+  const fs::path results = folder / json.value("folder", "");
+  auto files = TRY(files_below(results, results));
+  std::erase_if(files, [](const auto& one) { return !is_kept(one.first); });
+  result.files = std::move(files);
+  result.state = TRY(files_below(folder / kWork / json.value("versions", ""), folder / kWork));
   return outcome;
 }
 
