@@ -1,7 +1,7 @@
 /// The plant stops later than in its timetable.
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/half_normal.hpp"
 #include "core/diagnosis/effects/support/plant_hours.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {

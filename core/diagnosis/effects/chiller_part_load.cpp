@@ -1,7 +1,7 @@
 /// The building's own chiller is worse at part load, or in warm weather, than one COP says.
 #include <algorithm>
 
-#include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 #include "core/weather/psychrometrics.hpp"
 
 namespace recald::diagnosis::effects {

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/half_normal.hpp"
 #include "core/diagnosis/effects/support/plant_hours.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effects/support/meter_priors.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 

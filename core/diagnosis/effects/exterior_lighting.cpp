@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 #include "core/model/dark_hours.hpp"
 
 namespace recald::diagnosis::effects {

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 #include "core/diagnosis/spanned_days.hpp"
 
 namespace recald::diagnosis::effects {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/meter_priors.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {

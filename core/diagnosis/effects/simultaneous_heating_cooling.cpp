@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/half_normal.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 

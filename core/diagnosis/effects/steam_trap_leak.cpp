@@ -1,5 +1,5 @@
 /// Steam that is paid for but heats no room.
-#include "core/diagnosis/effects/support/meter_priors.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 

@@ -3,7 +3,7 @@
 
 #include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/half_normal.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {

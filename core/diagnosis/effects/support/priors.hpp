@@ -1,11 +1,19 @@
-/// Priors of positive amounts: below a physical limit, or as a share of a meter's mean.
+/// The usual priors of amounts and shares.
 #pragma once
+
+#include <limits>
 
 #include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
-#include "core/diagnosis/effects/support/half_normal.hpp"
 
 namespace recald::diagnosis::effects {
+
+/// Of an amount that is never negative: density falls from 0 on; `sd` is that of the normal before
+/// truncation at 0, in the amount's unit. @pre sd > 0
+[[nodiscard]] inline Prior half_normal(double sd) {
+  return TruncatedNormalPrior{
+      .location = 0.0, .sd = sd, .min = 0.0, .max = std::numeric_limits<double>::infinity()};
+}
 
 /// `half_normal` with an upper physical limit. @pre sd > 0, max > 0
 [[nodiscard]] inline Prior half_normal_below(double sd, double max) {
@@ -18,6 +26,11 @@ namespace recald::diagnosis::effects {
                                              double share) {
   const double mean_kW = facts.mean_of_kW(utility);
   return share * (mean_kW > 0.0 ? mean_kW : 0.010 * facts.building.floor_area_m2);
+}
+
+/// A share of which nothing is known. @param name  snake_case
+[[nodiscard]] inline EffectParameter any_share(const char* name, const char* unit) {
+  return {.name = name, .unit = unit, .prior = UniformPrior{0.0, 1.0}, .neutral = 0.0};
 }
 
 /// A share between two alternatives, tried at both ends. @param name  snake_case
