@@ -1,40 +1,9 @@
 /// The plant stops later than in its timetable.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/plant_hours.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-/// Counts from the last stop, so a late stop may extend past midnight, on Fridays into Saturday.
-class AfterHours final : public model::hourly::Alteration {
- public:
-  explicit AfterHours(double late_h) : late_h_(late_h) {}
-
-  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
-    run_at_least(covered_share(late_h_, hour.hours_since_stop), op);
-  }
-
- private:
-  double late_h_;
-};
-
-std::vector<EffectParameter> parameters_of_after_hours(const SiteFacts&) {
-  return {{.name = "late_stop",
-           .unit = "h",
-           .prior = half_normal(3.0),
-           .neutral = 0.0,
-           .scan = {1.0, 2.0, 4.0}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_after_hours(const SiteFacts&,
-                                                            std::span<const double> values, int) {
-  return std::make_unique<AfterHours>(values[0]);
-}
-
-}  // namespace
-
-Effect after_hours();
 
 Effect after_hours() {
   return {
@@ -61,8 +30,21 @@ Effect after_hours() {
                       "Whether the shutdown time follows sunset over the year, and whether chilled "
                       "water follows it."},
                      {"night_setback_missing", "Power at 03:00, long after any late stop."}},
-      .parameters = parameters_of_after_hours,
-      .bind = bind_after_hours,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "late_stop",
+                 .unit = "h",
+                 .prior = half_normal(3.0),
+                 .neutral = 0.0,
+                 .scan = {1.0, 2.0, 4.0}}};
+      },
+      // Counts from the last stop, so a late stop may extend past midnight, on Fridays into
+      // Saturday.
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([late_h = values[0]](const DriverHour& hour, StepOperation& op) {
+              run_at_least(covered_share(late_h, hour.hours_since_stop), op);
+            });
+          },
   };
 }
 

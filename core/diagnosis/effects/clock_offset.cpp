@@ -1,47 +1,10 @@
 /// A meter whose clock is wrong, or whose time zone was misinterpreted.
 #include <algorithm>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/shifted_record.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect clock_offset();
-
-namespace {
-
-class ClockOffset final : public model::hourly::Alteration {
- public:
-  ClockOffset(double offset_hours, int meter) : offset_hours_(offset_hours), meter_(meter) {}
-
-  void record(std::span<const model::DriverHour> hours, int meter,
-              std::span<double> power_kW) const override {
-    if (meter != meter_) return;
-    std::ranges::copy(shifted_record(hours, power_kW, offset_hours_), power_kW.begin());
-  }
-
- private:
-  double offset_hours_;
-  int meter_;
-};
-
-std::vector<EffectParameter> parameters_of_clock_offset(const SiteFacts&) {
-  return {{.name = "offset",
-           .unit = "h",
-           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 3.0, .min = -12.0, .max = 12.0},
-           .neutral = 0.0,
-           // Interval labels, daylight saving, and the time zones of both sides of the Atlantic.
-           .scan = {-12.0, -8.0, -7.0, -6.0, -5.0, -4.0, -3.0, -2.0, -1.0, -0.5, -0.25,
-                    0.25,  0.5,  1.0,  2.0,  3.0,  4.0,  5.0,  6.0,  7.0,  8.0,  12.0}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_clock_offset(const SiteFacts&,
-                                                             std::span<const double> values,
-                                                             int meter) {
-  return std::make_unique<ClockOffset>(values[0], meter);
-}
-
-}  // namespace
 
 Effect clock_offset() {
   return {
@@ -64,8 +27,24 @@ Effect clock_offset() {
                       "The other meters: a schedule moves them all, a wrong clock only this one."},
                      {"after_hours", "The other meters, and the meter's own display of time."},
                      {"dst_misapplied", "Winter weeks: a wrong clock is also wrong then."}},
-      .parameters = parameters_of_clock_offset,
-      .bind = bind_clock_offset};
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {
+            {.name = "offset",
+             .unit = "h",
+             .prior = TruncatedNormalPrior{.location = 0.0, .sd = 3.0, .min = -12.0, .max = 12.0},
+             .neutral = 0.0,
+             // Interval labels, daylight saving, and the time zones of both sides of the Atlantic.
+             .scan = {-12.0, -8.0, -7.0, -6.0, -5.0, -4.0, -3.0, -2.0, -1.0, -0.5, -0.25,
+                      0.25,  0.5,  1.0,  2.0,  3.0,  4.0,  5.0,  6.0,  7.0,  8.0,  12.0}}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int meter) {
+            return recording(meter, [offset_hours = values[0]](std::span<const DriverHour> hours,
+                                                               std::span<double> power_kW) {
+              std::ranges::copy(shifted_record(hours, power_kW, offset_hours), power_kW.begin());
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

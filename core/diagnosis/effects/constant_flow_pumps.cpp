@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
@@ -14,7 +14,7 @@ namespace {
 /// Which calendar months have their plant enabled.
 using Months = std::array<bool, 12>;
 
-std::size_t calendar_month(const model::DriverHour& hour) {
+std::size_t calendar_month(const DriverHour& hour) {
   return static_cast<unsigned>(hour.date.month()) - 1;
 }
 
@@ -23,7 +23,7 @@ std::size_t calendar_month(const model::DriverHour& hour) {
 Months warm_months(const model::Drivers& drivers) {
   std::array<double, 12> mean_C{};
   std::array<int, 12> hours{};
-  for (const model::DriverHour& hour : drivers.hours) {
+  for (const DriverHour& hour : drivers.hours) {
     mean_C[calendar_month(hour)] += hour.dry_bulb_C;
     ++hours[calendar_month(hour)];
   }
@@ -52,50 +52,13 @@ Months enabled_months(const model::Drivers& drivers, double season) {
   return enabled;
 }
 
-/// Leaves out the heat of the pumps in the water, a few per cent of their power.
-class ConstantFlowPumps final : public model::hourly::Alteration {
- public:
-  ConstantFlowPumps(const Months& enabled, double extra_kW)
-      : enabled_(enabled), extra_kW_(extra_kW) {}
-
-  void supply(const model::Building&, const model::DriverHour& hour,
-              const model::hourly::StepOperation&, model::hourly::StepLoads& loads) const override {
-    if (enabled_[calendar_month(hour)]) loads.pumps_W += 1000.0 * extra_kW_;
-  }
-
- private:
-  Months enabled_;
-  double extra_kW_;
-};
-
 /// Mean of the electricity meter; 10 W/m² if there is none.
 double pump_reference_kW(const SiteFacts& facts) {
   const double electricity_kW = facts.mean_of_kW(metering::Utility::electricity);
   return electricity_kW > 0.0 ? electricity_kW : 0.01 * facts.building.floor_area_m2;
 }
 
-std::vector<EffectParameter> parameters_of_constant_flow_pumps(const SiteFacts& facts) {
-  return {{.name = "extra_power",
-           .unit = "kW",
-           .prior = half_normal(0.05 * pump_reference_kW(facts)),
-           .neutral = 0.0},
-          {.name = "season",
-           .unit = "1: all year, 2: warm months, 3: cold months",
-           .prior = UniformPrior{0.5, 3.5},
-           .neutral = kAbsent,
-           .scan = {1.0, 2.0, 3.0},
-           .choice = true}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_constant_flow_pumps(const SiteFacts& facts,
-                                                                    std::span<const double> values,
-                                                                    int) {
-  return std::make_unique<ConstantFlowPumps>(enabled_months(facts.drivers, values[1]), values[0]);
-}
-
 }  // namespace
-
-Effect constant_flow_pumps();
 
 Effect constant_flow_pumps() {
   return {
@@ -126,8 +89,27 @@ Effect constant_flow_pumps() {
            {"equipment_step",
             "Whether the dates of the steps match the dates when the control system's log shows "
             "the plant enabled."}},
-      .parameters = parameters_of_constant_flow_pumps,
-      .bind = bind_constant_flow_pumps,
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        return {{.name = "extra_power",
+                 .unit = "kW",
+                 .prior = half_normal(0.05 * pump_reference_kW(facts)),
+                 .neutral = 0.0},
+                {.name = "season",
+                 .unit = "1: all year, 2: warm months, 3: cold months",
+                 .prior = UniformPrior{0.5, 3.5},
+                 .neutral = kAbsent,
+                 .scan = {1.0, 2.0, 3.0},
+                 .choice = true}};
+      },
+      // Leaves out the heat of the pumps in the water, a few per cent of their power.
+      .bind =
+          [](const SiteFacts& facts, Values values, int) {
+            return supplying([enabled = enabled_months(facts.drivers, values[1]),
+                              extra_kW = values[0]](const model::Building&, const DriverHour& hour,
+                                                    const StepOperation&, StepLoads& loads) {
+              if (enabled[calendar_month(hour)]) loads.pumps_W += 1000.0 * extra_kW;
+            });
+          },
   };
 }
 

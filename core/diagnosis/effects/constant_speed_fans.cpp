@@ -1,37 +1,8 @@
 /// Fans do not slow down with the flow.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-class ConstantSpeedFans final : public model::hourly::Alteration {
- public:
-  explicit ConstantSpeedFans(double constant_share) : constant_share_(constant_share) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    op.constant_fan_share += constant_share_ * (1.0 - op.constant_fan_share);
-  }
-
- private:
-  double constant_share_;
-};
-
-std::vector<EffectParameter> parameters_of_constant_speed_fans(const SiteFacts&) {
-  return {{.name = "constant_share",
-           .unit = "share of the fans",
-           .prior = UniformPrior{0.0, 1.0},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_constant_speed_fans(const SiteFacts&,
-                                                                    std::span<const double> values,
-                                                                    int) {
-  return std::make_unique<ConstantSpeedFans>(values[0]);
-}
-
-}  // namespace
-
-Effect constant_speed_fans();
 
 Effect constant_speed_fans() {
   return {
@@ -56,8 +27,15 @@ Effect constant_speed_fans() {
                      {"equipment_step",
                       "Electricity plotted against chilled water at a fixed hour: with constant "
                       "fans there is no slope. A clamp meter on one fan settles it."}},
-      .parameters = parameters_of_constant_speed_fans,
-      .bind = bind_constant_speed_fans,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {any_share("constant_share", "share of the fans")};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([constant_share = values[0]](const DriverHour&, StepOperation& op) {
+              op.constant_fan_share += constant_share * (1.0 - op.constant_fan_share);
+            });
+          },
   };
 }
 
