@@ -2,55 +2,9 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-/// A damper that does not close far enough sets a least share of what a running fan supplies, also
-/// while rooms are warmed up. One that does not close at all lets air into stopped handlers; the
-/// model itself leaves out rooms that are being served.
-class DamperStuckOpen final : public model::hourly::Alteration {
- public:
-  DamperStuckOpen(double open_share, bool is_idle) : open_share_(open_share), is_idle_(is_idle) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    if (is_idle_) {
-      op.idle_outdoor_air_m3_s += open_share_ * op.outdoor_air_m3_s;
-    } else {
-      op.outdoor_share_min = std::max(op.outdoor_share_min, open_share_);
-    }
-  }
-
- private:
-  double open_share_;
-  bool is_idle_;
-};
-
-/// Units in the rooms have no share of outdoor air.
-std::vector<EffectParameter> parameters_of_damper_stuck_open(const SiteFacts& facts) {
-  const bool has_shares = facts.building.air && model::has_reheat_boxes(facts.building);
-  return {{.name = "open_share",
-           .unit = "share of the daytime outdoor air, or of the supply air",
-           .prior = UniformPrior{0.0, 0.9},
-           .neutral = 0.0},
-          {.name = "while_stopped",
-           .unit = "-",
-           .prior = UniformPrior{0.0, 1.0},
-           .neutral = kAbsent,
-           .scan = has_shares ? std::vector{0.0, 1.0} : std::vector{1.0},
-           .choice = true}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_damper_stuck_open(const SiteFacts&,
-                                                                  std::span<const double> values,
-                                                                  int) {
-  return std::make_unique<DamperStuckOpen>(values[0], values[1] > 0.5);
-}
-
-}  // namespace
-
-Effect damper_stuck_open();
 
 Effect damper_stuck_open() {
   return {
@@ -88,8 +42,34 @@ Effect damper_stuck_open() {
                       "The delay behind outdoor temperature: heat to the ground lags by weeks, "
                       "outdoor air not at all."},
                      {"round_the_clock_zone", "Fan power at night: an open damper needs none."}},
-      .parameters = parameters_of_damper_stuck_open,
-      .bind = bind_damper_stuck_open,
+      // Units in the rooms have no share of outdoor air.
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        const bool has_shares = facts.building.air && model::has_reheat_boxes(facts.building);
+        return {{.name = "open_share",
+                 .unit = "share of the daytime outdoor air, or of the supply air",
+                 .prior = UniformPrior{0.0, 0.9},
+                 .neutral = 0.0},
+                {.name = "while_stopped",
+                 .unit = "-",
+                 .prior = UniformPrior{0.0, 1.0},
+                 .neutral = kAbsent,
+                 .scan = has_shares ? std::vector{0.0, 1.0} : std::vector{1.0},
+                 .choice = true}};
+      },
+      // A damper that does not close far enough sets a least share of what a running fan supplies,
+      // also while rooms are warmed up. One that does not close at all lets air into stopped
+      // handlers; the model itself leaves out rooms that are being served.
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([open_share = values[0], is_idle = values[1] > 0.5](
+                                 const DriverHour&, StepOperation& op) {
+              if (is_idle) {
+                op.idle_outdoor_air_m3_s += open_share * op.outdoor_air_m3_s;
+              } else {
+                op.outdoor_share_min = std::max(op.outdoor_share_min, open_share);
+              }
+            });
+          },
   };
 }
 

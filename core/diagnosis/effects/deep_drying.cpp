@@ -1,7 +1,7 @@
 /// The coil dries the air further than drawn.
 #include <algorithm>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
@@ -9,34 +9,7 @@ namespace {
 
 constexpr double kDriest_kg_kg = 0.003;  // Close to saturated air on freezing coils.
 
-/// The catalogue's entry 19 is a latent load missing from the model. This model has a latent load
-/// (latent_share 1), so only its depth can be missing: w_s is lower than that of air at 95 % and
-/// supply temperature, because the coil is colder than the leaving air.
-class DeepDrying final : public model::hourly::Alteration {
- public:
-  explicit DeepDrying(double deeper_kg_kg) : deeper_kg_kg_(deeper_kg_kg) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    op.coil_humidity_ratio -=
-        std::min(deeper_kg_kg_, std::max(op.coil_humidity_ratio - kDriest_kg_kg, 0.0));
-  }
-
- private:
-  double deeper_kg_kg_;
-};
-
-std::vector<EffectParameter> parameters_of_deep_drying(const SiteFacts&) {
-  return {{.name = "deeper_drying", .unit = "kg/kg", .prior = half_normal(0.0015), .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_deep_drying(const SiteFacts&,
-                                                            std::span<const double> values, int) {
-  return std::make_unique<DeepDrying>(values[0]);
-}
-
 }  // namespace
-
-Effect deep_drying();
 
 Effect deep_drying() {
   return {
@@ -63,8 +36,22 @@ Effect deep_drying() {
            {"fouling",
             "Dry hot days: fouling also costs energy then. A humidity sensor behind the coil "
             "settles it."}},
-      .parameters = parameters_of_deep_drying,
-      .bind = bind_deep_drying,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "deeper_drying",
+                 .unit = "kg/kg",
+                 .prior = half_normal(0.0015),
+                 .neutral = 0.0}};
+      },
+      // The catalogue's entry 19 is a latent load missing from the model. This model has a latent
+      // load (latent_share 1), so only its depth can be missing: w_s is lower than that of air at
+      // 95 % and supply temperature, because the coil is colder than the leaving air.
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([deeper_kg_kg = values[0]](const DriverHour&, StepOperation& op) {
+              op.coil_humidity_ratio -=
+                  std::min(deeper_kg_kg, std::max(op.coil_humidity_ratio - kDriest_kg_kg, 0.0));
+            });
+          },
   };
 }
 

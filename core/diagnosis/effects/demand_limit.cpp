@@ -4,17 +4,10 @@
 #include <vector>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect demand_limit();
-
 namespace {
-
-using model::DriverHour;
-using model::hourly::StepLoads;
-using model::hourly::StepOperation;
 
 constexpr int kFromHour = 13;
 constexpr int kToHour = 18;
@@ -38,7 +31,7 @@ std::vector<double> warmest_afternoons_C(const model::Drivers& drivers) {
   return warmest_C;
 }
 
-class DemandLimit final : public model::hourly::Alteration {
+class DemandLimit final : public Alteration {
  public:
   DemandLimit(double shed, double rebound, double above_C, std::vector<double> warmest_C)
       : shed_(shed), rebound_(rebound), above_C_(above_C), warmest_C_(std::move(warmest_C)) {}
@@ -79,60 +72,58 @@ double quantile_C(const std::vector<double>& sorted_C, double share) {
   return sorted_C[static_cast<std::size_t>(share * static_cast<double>(sorted_C.size() - 1))];
 }
 
-std::vector<EffectParameter> parameters_of_demand_limit(const SiteFacts& facts) {
-  const double none = kAbsent;
-  std::vector<double> days_C = warmest_afternoons_C(facts.drivers);
-  std::erase_if(days_C, [](double day_C) { return day_C < -200.0; });
-  if (days_C.empty()) days_C = {25.0};
-  std::ranges::sort(days_C);
-  const double lowest_C = quantile_C(days_C, 0.5);
-  return {{.name = "shed_share",
-           .unit = "-",
-           .prior = UniformPrior{.min = 0.0, .max = 0.4},
-           .neutral = 0.0},
-          {.name = "rebound",
-           .unit = "-",
-           .prior = UniformPrior{.min = 0.0, .max = 1.0},
-           .neutral = none,
-           .scan = {0.3}},
-          {.name = "event_threshold",
-           .unit = "degC",
-           .prior = UniformPrior{.min = lowest_C, .max = days_C.back() + 1.0},
-           .neutral = none,
-           .scan = {quantile_C(days_C, 0.75), quantile_C(days_C, 0.85), quantile_C(days_C, 0.95)}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_demand_limit(const SiteFacts& facts,
-                                                             std::span<const double> values, int) {
-  return std::make_unique<DemandLimit>(values[0], values[1], values[2],
-                                       warmest_afternoons_C(facts.drivers));
-}
-
 }  // namespace
 
 Effect demand_limit() {
-  return {.id = "demand_limit",
-          .title = "Loads shed on hot afternoons",
-          .meaning =
-              "On the hottest working days lights, devices and fans are turned down in the "
-              "afternoon, and part of the energy is used in the evening instead.",
-          .physics =
-              "lights, plugs and fans x (1 - a) from 13 to 18 h, x (1 + rho a) from 18 to "
-              "20 h, on working days warmer than T_a in the afternoon; a, rho in -, T_a in "
-              "degC",
-          .on_meters =
-              "Electricity falls on the hottest working afternoons and partly comes back in the "
-              "evening.",
-          .check = "The demand limit in the building controls, and the utility's list of events.",
-          .effect_class = EffectClass::electrical,
-          .dating = Dating::may_begin,
-          .confusable = {{"constant_speed_fans",
-                          "The evening after hot days: only shed load rebounds."},
-                         {"phase_lost", "A mild afternoon: a lost phase is also missing then."},
-                         {"chiller_part_load",
-                          "Whether the utility's list of events matches these days."}},
-          .parameters = parameters_of_demand_limit,
-          .bind = bind_demand_limit};
+  return {
+      .id = "demand_limit",
+      .title = "Loads shed on hot afternoons",
+      .meaning =
+          "On the hottest working days lights, devices and fans are turned down in the "
+          "afternoon, and part of the energy is used in the evening instead.",
+      .physics =
+          "lights, plugs and fans x (1 - a) from 13 to 18 h, x (1 + rho a) from 18 to "
+          "20 h, on working days warmer than T_a in the afternoon; a, rho in -, T_a in "
+          "degC",
+      .on_meters =
+          "Electricity falls on the hottest working afternoons and partly comes back in the "
+          "evening.",
+      .check = "The demand limit in the building controls, and the utility's list of events.",
+      .effect_class = EffectClass::electrical,
+      .dating = Dating::may_begin,
+      .confusable = {{"constant_speed_fans",
+                      "The evening after hot days: only shed load rebounds."},
+                     {"phase_lost", "A mild afternoon: a lost phase is also missing then."},
+                     {"chiller_part_load",
+                      "Whether the utility's list of events matches these days."}},
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        const double none = kAbsent;
+        std::vector<double> days_C = warmest_afternoons_C(facts.drivers);
+        std::erase_if(days_C, [](double day_C) { return day_C < -200.0; });
+        if (days_C.empty()) days_C = {25.0};
+        std::ranges::sort(days_C);
+        const double lowest_C = quantile_C(days_C, 0.5);
+        return {{.name = "shed_share",
+                 .unit = "-",
+                 .prior = UniformPrior{.min = 0.0, .max = 0.4},
+                 .neutral = 0.0},
+                {.name = "rebound",
+                 .unit = "-",
+                 .prior = UniformPrior{.min = 0.0, .max = 1.0},
+                 .neutral = none,
+                 .scan = {0.3}},
+                {.name = "event_threshold",
+                 .unit = "degC",
+                 .prior = UniformPrior{.min = lowest_C, .max = days_C.back() + 1.0},
+                 .neutral = none,
+                 .scan = {quantile_C(days_C, 0.75), quantile_C(days_C, 0.85),
+                          quantile_C(days_C, 0.95)}}};
+      },
+      .bind = [](const SiteFacts& facts, Values values, int) -> Altered {
+        return std::make_unique<DemandLimit>(values[0], values[1], values[2],
+                                             warmest_afternoons_C(facts.drivers));
+      },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

@@ -1,30 +1,11 @@
 /// Outdoor air follows the number of people.
 #include <algorithm>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {
-
-/// If only some rooms are served round the clock, these are laboratories, whose hoods do not count
-/// people: only the share of the running handlers that serves daytime rooms is throttled.
-class DemandVentilation final : public model::hourly::Alteration {
- public:
-  DemandVentilation(double demand_share, double always_share)
-      : demand_share_(demand_share), always_share_(always_share) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    const double by_day = (1.0 - always_share_) * op.daytime_share;
-    const double running = always_share_ + by_day;
-    if (running <= 0.0) return;
-    const double absence = 1.0 - std::clamp(op.people_share, 0.0, 1.0);
-    op.outdoor_air_m3_s *= 1.0 - demand_share_ * absence * (by_day / running);
-  }
-
- private:
-  double demand_share_;
-  double always_share_;
-};
 
 /// All handlers together if all run round the clock: then they serve ordinary rooms.
 double always_share(const model::Building& building) {
@@ -32,22 +13,7 @@ double always_share(const model::Building& building) {
   return share < 1.0 ? share : 0.0;
 }
 
-std::vector<EffectParameter> parameters_of_demand_ventilation(const SiteFacts&) {
-  return {{.name = "demand_share",
-           .unit = "share of the outdoor air",
-           .prior = UniformPrior{0.0, 1.0},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_demand_ventilation(const SiteFacts& facts,
-                                                                   std::span<const double> values,
-                                                                   int) {
-  return std::make_unique<DemandVentilation>(values[0], always_share(facts.building));
-}
-
 }  // namespace
-
-Effect demand_ventilation();
 
 Effect demand_ventilation() {
   return {
@@ -75,8 +41,24 @@ Effect demand_ventilation() {
            {"semester_calendar",
             "Heat during a winter break: without people it rises, with less outdoor air it "
             "falls."}},
-      .parameters = parameters_of_demand_ventilation,
-      .bind = bind_demand_ventilation,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {any_share("demand_share", "share of the outdoor air")};
+      },
+      // If only some rooms are served round the clock, these are laboratories, whose hoods do not
+      // count people: only the share of the running handlers that serves daytime rooms is
+      // throttled.
+      .bind =
+          [](const SiteFacts& facts, Values values, int) {
+            return operating(
+                [demand_share = values[0], always_share = always_share(facts.building)](
+                    const DriverHour&, StepOperation& op) {
+                  const double by_day = (1.0 - always_share) * op.daytime_share;
+                  const double running = always_share + by_day;
+                  if (running <= 0.0) return;
+                  const double absence = 1.0 - std::clamp(op.people_share, 0.0, 1.0);
+                  op.outdoor_air_m3_s *= 1.0 - demand_share * absence * (by_day / running);
+                });
+          },
   };
 }
 

@@ -1,48 +1,11 @@
 /// The plant starts earlier than in its timetable, and earlier still in the cold.
 #include <algorithm>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/plant_hours.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-class EarlyStart final : public model::hourly::Alteration {
- public:
-  EarlyStart(double fixed_h, double cold_h_K) : fixed_h_(fixed_h), cold_h_K_(cold_h_K) {}
-
-  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
-    const double cold_K = std::max(op.heating_occupied_C - hour.dry_bulb_C, 0.0);
-    run_at_least(covered_share(fixed_h_ + cold_h_K_ * cold_K, hour.hours_to_start), op);
-  }
-
- private:
-  double fixed_h_;
-  double cold_h_K_;
-};
-
-std::vector<EffectParameter> parameters_of_early_start(const SiteFacts&) {
-  return {{.name = "lead",
-           .unit = "h",
-           .prior = half_normal(2.0),
-           .neutral = 0.0,
-           .scan = {0.0, 1.0, 3.0}},
-          {.name = "lead_per_cold",
-           .unit = "h/K",
-           .prior = half_normal(0.1),
-           .neutral = 0.0,
-           .scan = {0.0, 0.03, 0.1}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_early_start(const SiteFacts&,
-                                                            std::span<const double> values, int) {
-  return std::make_unique<EarlyStart>(values[0], values[1]);
-}
-
-}  // namespace
-
-Effect early_start();
 
 Effect early_start() {
   return {
@@ -69,8 +32,26 @@ Effect early_start() {
                      {"night_setback_missing",
                       "The start spike grows with the cold; there is none on weekends without a "
                       "start afterwards."}},
-      .parameters = parameters_of_early_start,
-      .bind = bind_early_start,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "lead",
+                 .unit = "h",
+                 .prior = half_normal(2.0),
+                 .neutral = 0.0,
+                 .scan = {0.0, 1.0, 3.0}},
+                {.name = "lead_per_cold",
+                 .unit = "h/K",
+                 .prior = half_normal(0.1),
+                 .neutral = 0.0,
+                 .scan = {0.0, 0.03, 0.1}}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([fixed_h = values[0], cold_h_K = values[1]](const DriverHour& hour,
+                                                                         StepOperation& op) {
+              const double cold_K = std::max(op.heating_occupied_C - hour.dry_bulb_C, 0.0);
+              run_at_least(covered_share(fixed_h + cold_h_K * cold_K, hour.hours_to_start), op);
+            });
+          },
   };
 }
 

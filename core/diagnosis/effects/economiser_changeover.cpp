@@ -1,37 +1,7 @@
 /// Free cooling ends at a different outdoor temperature than drawn.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-class EconomiserChangeover final : public model::hourly::Alteration {
- public:
-  explicit EconomiserChangeover(double shift_K) : shift_K_(shift_K) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    op.economiser_lockout_C += shift_K_;
-  }
-
- private:
-  double shift_K_;
-};
-
-std::vector<EffectParameter> parameters_of_economiser_changeover(const SiteFacts&) {
-  return {{.name = "shift",
-           .unit = "K",
-           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 3.0, .min = -10.0, .max = 10.0},
-           .neutral = 0.0,
-           .scan = {-4.0, -2.0, 2.0, 4.0}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_economiser_changeover(
-    const SiteFacts&, std::span<const double> values, int) {
-  return std::make_unique<EconomiserChangeover>(values[0]);
-}
-
-}  // namespace
-
-Effect economiser_changeover();
 
 Effect economiser_changeover() {
   return {
@@ -62,8 +32,20 @@ Effect economiser_changeover() {
            {"supply_reset_missing",
             "Whether heat rises with chilled water. The damper position at 16 to 26 °C settles "
             "it."}},
-      .parameters = parameters_of_economiser_changeover,
-      .bind = bind_economiser_changeover,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {
+            {.name = "shift",
+             .unit = "K",
+             .prior = TruncatedNormalPrior{.location = 0.0, .sd = 3.0, .min = -10.0, .max = 10.0},
+             .neutral = 0.0,
+             .scan = {-4.0, -2.0, 2.0, 4.0}}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([shift_K = values[0]](const DriverHour&, StepOperation& op) {
+              op.economiser_lockout_C += shift_K;
+            });
+          },
   };
 }
 

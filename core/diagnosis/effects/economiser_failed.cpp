@@ -1,37 +1,8 @@
 /// Free cooling does not work.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-class EconomiserFailed final : public model::hourly::Alteration {
- public:
-  explicit EconomiserFailed(double failed_share) : failed_share_(failed_share) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    op.economiser_share *= 1.0 - failed_share_;
-  }
-
- private:
-  double failed_share_;
-};
-
-std::vector<EffectParameter> parameters_of_economiser_failed(const SiteFacts&) {
-  return {{.name = "failed_share",
-           .unit = "share of the free-cooling flow",
-           .prior = UniformPrior{0.0, 1.0},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_economiser_failed(const SiteFacts&,
-                                                                  std::span<const double> values,
-                                                                  int) {
-  return std::make_unique<EconomiserFailed>(values[0]);
-}
-
-}  // namespace
-
-Effect economiser_failed();
 
 Effect economiser_failed() {
   return {
@@ -60,8 +31,15 @@ Effect economiser_failed() {
                      {"simultaneous_heating_cooling",
                       "Chilled water at 12 °C with the economiser opened by hand: it falls to near "
                       "zero if the economiser was the cause."}},
-      .parameters = parameters_of_economiser_failed,
-      .bind = bind_economiser_failed,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {any_share("failed_share", "share of the free-cooling flow")};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([failed_share = values[0]](const DriverHour&, StepOperation& op) {
+              op.economiser_share *= 1.0 - failed_share;
+            });
+          },
   };
 }
 

@@ -2,28 +2,24 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect equipment_step();
-
 namespace {
-
-using model::hourly::StepOperation;
 
 /// A part runs all the time, the rest as lights and plugs do above their least of the month. What
 /// is added is plugs; what goes, goes from lights and plugs alike.
-class EquipmentStep final : public model::hourly::Alteration {
+class EquipmentStep final : public Alteration {
  public:
   EquipmentStep(double power_kW, double following, const model::Drivers& drivers)
       : power_W_(1e3 * power_kW), following_(following), standby_(drivers) {
-    for (const model::DriverHour& hour : drivers.hours) mean_above_W_ += above_W(hour);
+    for (const DriverHour& hour : drivers.hours) mean_above_W_ += above_W(hour);
     mean_above_W_ /= static_cast<double>(std::max(drivers.hours.size(), std::size_t{1}));
   }
 
-  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
+  void operate(const DriverHour& hour, StepOperation& operation) const override {
     const double use = mean_above_W_ > 0.0 ? above_W(hour) / mean_above_W_ : 1.0;
     const double change_W = power_W_ * (1.0 - following_ + following_ * use);
     if (change_W >= 0.0) {
@@ -37,7 +33,7 @@ class EquipmentStep final : public model::hourly::Alteration {
   }
 
  private:
-  [[nodiscard]] double above_W(const model::DriverHour& hour) const {
+  [[nodiscard]] double above_W(const DriverHour& hour) const {
     return standby_.lights_above_W(hour, hour.lights_W) +
            standby_.plugs_above_W(hour, hour.plugs_W);
   }
@@ -47,25 +43,6 @@ class EquipmentStep final : public model::hourly::Alteration {
   StandbyLoads standby_;
   double mean_above_W_ = 0.0;
 };
-
-std::vector<EffectParameter> parameters_of_equipment_step(const SiteFacts& facts) {
-  const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.10);
-  return {{.name = "power",
-           .unit = "kW",
-           .prior = TruncatedNormalPrior{.location = 0.0, .sd = sd_kW},
-           .neutral = 0.0},
-          {.name = "following_use",
-           .unit = "-",
-           .prior = UniformPrior{.min = 0.0, .max = 1.0},
-           .neutral = kAbsent,
-           .scan = {0.5, 1.0}}};  // 0 is a server room.
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_equipment_step(const SiteFacts& facts,
-                                                               std::span<const double> values,
-                                                               int) {
-  return std::make_unique<EquipmentStep>(values[0], values[1], facts.drivers);
-}
 
 }  // namespace
 
@@ -90,8 +67,22 @@ Effect equipment_step() {
             "Chilled water after the date: equipment moves it, a lost phase does not."},
            {"vacancy",
             "The number of people in the building: badge or lift counts after the date."}},
-      .parameters = parameters_of_equipment_step,
-      .bind = bind_equipment_step};
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.10);
+        return {{.name = "power",
+                 .unit = "kW",
+                 .prior = TruncatedNormalPrior{.location = 0.0, .sd = sd_kW},
+                 .neutral = 0.0},
+                {.name = "following_use",
+                 .unit = "-",
+                 .prior = UniformPrior{.min = 0.0, .max = 1.0},
+                 .neutral = kAbsent,
+                 .scan = {0.5, 1.0}}};  // 0 is a server room.
+      },
+      .bind = [](const SiteFacts& facts, Values values, int) -> Altered {
+        return std::make_unique<EquipmentStep>(values[0], values[1], facts.drivers);
+      },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

@@ -2,62 +2,25 @@
 #include <algorithm>
 #include <array>
 
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 #include "core/model/dark_hours.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect exterior_lighting();
-
 namespace {
-
-using model::hourly::StepOperation;
 
 using SharesByHour = std::array<double, 24>;
 
 SharesByHour mean_dark_shares(const model::Drivers& drivers) {
   SharesByHour sums{};
   SharesByHour counts{};
-  for (const model::DriverHour& hour : drivers.hours) {
+  for (const DriverHour& hour : drivers.hours) {
     const auto i = static_cast<std::size_t>(hour.local_hour);
     sums[i] += model::dark_share(hour);
     counts[i] += 1.0;
   }
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(counts[i], 1.0);
   return sums;
-}
-
-/// A plug profile derived from the electricity meter may already contain the lamps' mean of each
-/// hour, as heat in the rooms; that share is subtracted.
-class ExteriorLighting final : public model::hourly::Alteration {
- public:
-  ExteriorLighting(double power_kW, double share_in_plugs, const SharesByHour& mean_dark_shares)
-      : power_W_(1e3 * power_kW),
-        share_in_plugs_(share_in_plugs),
-        mean_dark_shares_(mean_dark_shares) {}
-
-  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
-    const double usual_share = mean_dark_shares_[static_cast<std::size_t>(hour.local_hour)];
-    operation.exterior_W += power_W_ * model::dark_share(hour);
-    operation.plugs_W = std::max(operation.plugs_W - share_in_plugs_ * power_W_ * usual_share, 0.0);
-  }
-
- private:
-  double power_W_;
-  double share_in_plugs_;
-  SharesByHour mean_dark_shares_;
-};
-
-std::vector<EffectParameter> parameters_of_exterior_lighting(const SiteFacts& facts) {
-  const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.05);
-  return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
-          either_share("share_in_plugs")};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_exterior_lighting(const SiteFacts& facts,
-                                                                  std::span<const double> values,
-                                                                  int) {
-  return std::make_unique<ExteriorLighting>(values[0], values[1], mean_dark_shares(facts.drivers));
 }
 
 }  // namespace
@@ -83,8 +46,26 @@ Effect exterior_lighting() {
             "The evening switch-on in 15-minute values: does it move with sunset over the weeks?"},
            {"weekend_operation", "Chilled water at the same hours: exterior lights need none."},
            {"dst_misapplied", "The other meters: exterior lights only change electricity."}},
-      .parameters = parameters_of_exterior_lighting,
-      .bind = bind_exterior_lighting};
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.05);
+        return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
+                either_share("share_in_plugs")};
+      },
+      // A plug profile derived from the electricity meter may already contain the lamps' mean of
+      // each hour, as heat in the rooms; that share is subtracted.
+      .bind =
+          [](const SiteFacts& facts, Values values, int) {
+            return operating([power_W = 1e3 * values[0], share_in_plugs = values[1],
+                              mean_dark_shares = mean_dark_shares(facts.drivers)](
+                                 const DriverHour& hour, StepOperation& operation) {
+              const double usual_share =
+                  mean_dark_shares[static_cast<std::size_t>(hour.local_hour)];
+              operation.exterior_W += power_W * model::dark_share(hour);
+              operation.plugs_W =
+                  std::max(operation.plugs_W - share_in_plugs * power_W * usual_share, 0.0);
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects
