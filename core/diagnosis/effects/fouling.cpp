@@ -2,88 +2,70 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 #include "core/diagnosis/spanned_days.hpp"
 
 namespace recald::diagnosis::effects {
 
-Effect fouling();
-
-namespace {
-
-using model::hourly::StepLoads;
-using model::hourly::StepOperation;
-
-/// Its dates are part of its physics (growth counts from one and restarts at the other), so they
-/// are parameters here. The wrapper could only switch the effect on and off.
-class Fouling final : public model::hourly::Alteration {
- public:
-  Fouling(double per_year, double from_day, double cleaned_day)
-      : per_year_(per_year), from_day_(from_day), cleaned_day_(cleaned_day) {}
-
-  void supply(const model::Building&, const model::DriverHour& hour, const StepOperation&,
-              StepLoads& loads) const override {
-    const double day = elapsed_days(hour);
-    const double clean_day = day < cleaned_day_ ? from_day_ : std::max(from_day_, cleaned_day_);
-    const double years = std::max(day - clean_day, 0.0) / kDaysPerYear;
-    loads.cooling_cost_factor *= 1.0 + per_year_ * years;
-  }
-
- private:
-  double per_year_;
-  double from_day_;
-  double cleaned_day_;
-};
-
-std::vector<EffectParameter> parameters_of_fouling(const SiteFacts& facts) {
-  const double days = spanned_days(facts.drivers);
-  const double none = kAbsent;
-  return {{.name = "growth", .unit = "1/a", .prior = half_normal_below(0.08, 1.0), .neutral = 0.0},
-          {.name = "from_day",
-           .unit = "d",
-           .prior = UniformPrior{.min = 0.0, .max = days},
-           .neutral = none,
-           .scan = {0.0, 0.25 * days, 0.5 * days, 0.75 * days}},
-          // The last day stands for "not cleaned in this record".
-          {.name = "cleaned_day",
-           .unit = "d",
-           .prior = UniformPrior{.min = 0.0, .max = days},
-           .neutral = none,
-           .scan = {0.3 * days, 0.4 * days, 0.5 * days, 0.6 * days, 0.8 * days, days}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_fouling(const SiteFacts&,
-                                                        std::span<const double> values, int) {
-  return std::make_unique<Fouling>(values[0], values[1], values[2]);
-}
-
-}  // namespace
-
 Effect fouling() {
-  return {.id = "fouling",
-          .title = "Cooling plant fouls slowly",
-          .meaning =
-              "The same cooling takes a little more electricity each month, as tubes, coils or "
-              "filters clog. Cleaning restores the efficiency at once.",
-          .physics =
-              "cost of cooling x (1 + r years); years since fouling began or since the last "
-              "cleaning, r in 1/year",
-          .on_meters =
-              "Electricity, or chilled water where it is bought, rises year by year for the same "
-              "cooling; a cleaning ends it.",
-          .check =
-              "The chiller's approach temperatures, the tower, the coils and the filters; the date "
-              "of the last cleaning.",
-          .effect_class = EffectClass::plant,
-          .confusable = {{"scale_fault",
-                          "Compare two summers: a wrong scale is constant, fouling grows."},
-                         {"plug_growth",
-                          "Electricity on winter weekends: plugs grow there, fouling does "
-                          "not."},
-                         {"chiller_part_load",
-                          "Chiller power at one load and tower temperature, this year and last."}},
-          .parameters = parameters_of_fouling,
-          .bind = bind_fouling};
+  return {
+      .id = "fouling",
+      .title = "Cooling plant fouls slowly",
+      .meaning =
+          "The same cooling takes a little more electricity each month, as tubes, coils or "
+          "filters clog. Cleaning restores the efficiency at once.",
+      .physics =
+          "cost of cooling x (1 + r years); years since fouling began or since the last "
+          "cleaning, r in 1/year",
+      .on_meters =
+          "Electricity, or chilled water where it is bought, rises year by year for the same "
+          "cooling; a cleaning ends it.",
+      .check =
+          "The chiller's approach temperatures, the tower, the coils and the filters; the date "
+          "of the last cleaning.",
+      .effect_class = EffectClass::plant,
+      .confusable = {{"scale_fault",
+                      "Compare two summers: a wrong scale is constant, fouling grows."},
+                     {"plug_growth",
+                      "Electricity on winter weekends: plugs grow there, fouling does "
+                      "not."},
+                     {"chiller_part_load",
+                      "Chiller power at one load and tower temperature, this year and last."}},
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        const double days = spanned_days(facts.drivers);
+        const double none = kAbsent;
+        return {{.name = "growth",
+                 .unit = "1/a",
+                 .prior = half_normal_below(0.08, 1.0),
+                 .neutral = 0.0},
+                {.name = "from_day",
+                 .unit = "d",
+                 .prior = UniformPrior{.min = 0.0, .max = days},
+                 .neutral = none,
+                 .scan = {0.0, 0.25 * days, 0.5 * days, 0.75 * days}},
+                // The last day stands for "not cleaned in this record".
+                {.name = "cleaned_day",
+                 .unit = "d",
+                 .prior = UniformPrior{.min = 0.0, .max = days},
+                 .neutral = none,
+                 .scan = {0.3 * days, 0.4 * days, 0.5 * days, 0.6 * days, 0.8 * days, days}}};
+      },
+      // Its dates are part of its physics (growth counts from one and restarts at the other), so
+      // they are parameters here. The wrapper could only switch the effect on and off.
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return supplying([per_year = values[0], from_day = values[1], cleaned_day = values[2]](
+                                 const model::Building&, const DriverHour& hour,
+                                 const StepOperation&, StepLoads& loads) {
+              const double day = elapsed_days(hour);
+              const double clean_day =
+                  day < cleaned_day ? from_day : std::max(from_day, cleaned_day);
+              const double years = std::max(day - clean_day, 0.0) / kDaysPerYear;
+              loads.cooling_cost_factor *= 1.0 + per_year * years;
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

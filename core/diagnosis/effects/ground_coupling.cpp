@@ -5,15 +5,11 @@
 #include <numbers>
 
 #include "core/absent.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect ground_coupling();
-
 namespace {
-
-using model::hourly::StepOperation;
 
 constexpr double kPerDay = 2.0 * std::numbers::pi / 365.0;  // rad
 constexpr double kLongEnough_hours = 300.0 * 24.0;          // to separate mean and swing
@@ -33,7 +29,7 @@ YearlyWave wave_of(const SiteFacts& facts) {
   }
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (const model::DriverHour& hour : hours) {
+  for (const DriverHour& hour : hours) {
     const double angle = kPerDay * hour.day_of_year;
     const Eigen::Vector3d row{1.0, std::cos(angle), std::sin(angle)};
     normal += row * row.transpose();
@@ -59,7 +55,7 @@ double footprint_m2(const model::Building& building) {
 
 /// Widens the model's own path to the ground, so that the exchange follows the rooms. The path then
 /// leads to the mean of both ground temperatures, weighted by their conductances.
-class GroundCoupling final : public model::hourly::Alteration {
+class GroundCoupling final : public Alteration {
  public:
   GroundCoupling(const SiteFacts& facts, double conductance_W_K, double lag_days)
       : conductance_W_K_(conductance_W_K),
@@ -79,7 +75,7 @@ class GroundCoupling final : public model::hourly::Alteration {
     }
   }
 
-  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
+  void operate(const DriverHour& hour, StepOperation& operation) const override {
     if (conductance_W_K_ == 0.0) return;  // without any path to the ground this would be 0/0
     const double weight = conductance_W_K_ / (drawn_W_K_ + conductance_W_K_);
     operation.ground_C += weight * (ground_C(hour.day_of_year) - operation.ground_C);
@@ -109,25 +105,6 @@ class GroundCoupling final : public model::hourly::Alteration {
   double lag_days_;
 };
 
-std::vector<EffectParameter> parameters_of_ground_coupling(const SiteFacts& facts) {
-  // 0.3 W/(m2 K): a basement without insulation.
-  return {{.name = "ground_conductance",
-           .unit = "W/K",
-           .prior = half_normal(0.3 * footprint_m2(facts.building)),
-           .neutral = 0.0},
-          {.name = "ground_lag",
-           .unit = "d",
-           .prior = TruncatedNormalPrior{.location = 40.0, .sd = 20.0, .min = 0.0, .max = 120.0},
-           .neutral = kAbsent,
-           .scan = {20.0, 40.0, 70.0}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_ground_coupling(const SiteFacts& facts,
-                                                                std::span<const double> values,
-                                                                int) {
-  return std::make_unique<GroundCoupling>(facts, values[0], values[1]);
-}
-
 }  // namespace
 
 Effect ground_coupling() {
@@ -153,8 +130,23 @@ Effect ground_coupling() {
             "The hot-water sub-meter, or steam on a summer weekend without hot-water use."},
            {"stack_infiltration",
             "Compare heating in spring and in autumn at the same outdoor temperature."}},
-      .parameters = parameters_of_ground_coupling,
-      .bind = bind_ground_coupling};
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        // 0.3 W/(m2 K): a basement without insulation.
+        return {
+            {.name = "ground_conductance",
+             .unit = "W/K",
+             .prior = half_normal(0.3 * footprint_m2(facts.building)),
+             .neutral = 0.0},
+            {.name = "ground_lag",
+             .unit = "d",
+             .prior = TruncatedNormalPrior{.location = 40.0, .sd = 20.0, .min = 0.0, .max = 120.0},
+             .neutral = kAbsent,
+             .scan = {20.0, 40.0, 70.0}}};
+      },
+      .bind = [](const SiteFacts& facts, Values values, int) -> Altered {
+        return std::make_unique<GroundCoupling>(facts, values[0], values[1]);
+      },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

@@ -2,17 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 #include "core/weather/psychrometrics.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect heat_pump_defrost();
-
 namespace {
-
-using model::hourly::StepLoads;
-using model::hourly::StepOperation;
 
 // Coils frost most near 1 C: colder air holds less water, and warmer air does not freeze on them.
 constexpr double kWorst_C = 1.0;
@@ -20,35 +15,6 @@ constexpr double kTwiceVariance_K2 = 18.0;  // 3 K wide
 // No frost in air drier than this; full frosting from 90 % on.
 constexpr double kDry = 0.5;
 constexpr double kDryToMoist = 0.4;
-
-class HeatPumpDefrost final : public model::hourly::Alteration {
- public:
-  HeatPumpDefrost(double depth, double pressure_Pa) : depth_(depth), pressure_Pa_(pressure_Pa) {}
-
-  void supply(const model::Building&, const model::DriverHour&, const StepOperation& operation,
-              StepLoads& loads) const override {
-    const double from_worst_K = operation.dry_bulb_C - kWorst_C;
-    const double frost = std::exp(-from_worst_K * from_worst_K / kTwiceVariance_K2);
-    const double saturated = weather::humidity_ratio(operation.dry_bulb_C, 1.0, pressure_Pa_);
-    const double moist =
-        std::clamp((operation.humidity_ratio / saturated - kDry) / kDryToMoist, 0.0, 1.0);
-    loads.heating_cost_factor /= 1.0 - depth_ * frost * moist;
-  }
-
- private:
-  double depth_;
-  double pressure_Pa_;
-};
-
-std::vector<EffectParameter> parameters_of_heat_pump_defrost(const SiteFacts&) {
-  return {{.name = "cop_loss", .unit = "-", .prior = half_normal_below(0.15, 0.6), .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_heat_pump_defrost(const SiteFacts& facts,
-                                                                  std::span<const double> values,
-                                                                  int) {
-  return std::make_unique<HeatPumpDefrost>(values[0], facts.drivers.pressure_Pa);
-}
 
 }  // namespace
 
@@ -74,8 +40,27 @@ Effect heat_pump_defrost() {
             "humidifiers run in dry air."},
            {"stack_infiltration",
             "Electricity at -10 °C: frost costs nothing then, and draught is at its worst."}},
-      .parameters = parameters_of_heat_pump_defrost,
-      .bind = bind_heat_pump_defrost};
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "cop_loss",
+                 .unit = "-",
+                 .prior = half_normal_below(0.15, 0.6),
+                 .neutral = 0.0}};
+      },
+      .bind =
+          [](const SiteFacts& facts, Values values, int) {
+            return supplying([depth = values[0], pressure_Pa = facts.drivers.pressure_Pa](
+                                 const model::Building&, const DriverHour&,
+                                 const StepOperation& operation, StepLoads& loads) {
+              const double from_worst_K = operation.dry_bulb_C - kWorst_C;
+              const double frost = std::exp(-from_worst_K * from_worst_K / kTwiceVariance_K2);
+              const double saturated =
+                  weather::humidity_ratio(operation.dry_bulb_C, 1.0, pressure_Pa);
+              const double moist =
+                  std::clamp((operation.humidity_ratio / saturated - kDry) / kDryToMoist, 0.0, 1.0);
+              loads.heating_cost_factor /= 1.0 - depth * frost * moist;
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

@@ -2,51 +2,10 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-/// The model charges for the humidity above outdoor air, so if only a share of the air handlers has
-/// a humidifier, the humidity ratio is lowered accordingly. The larger of this and the drawn
-/// humidifier is charged.
-class Humidifier final : public model::hourly::Alteration {
- public:
-  Humidifier(double served_share, double held_kg_kg)
-      : served_share_(served_share), held_kg_kg_(held_kg_kg) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    const double lack_kg_kg = served_share_ * std::max(held_kg_kg_ - op.humidity_ratio, 0.0);
-    if (lack_kg_kg <= 0.0) return;
-    op.humidifier_kg_kg = std::max(op.humidifier_kg_kg, op.humidity_ratio + lack_kg_kg);
-  }
-
- private:
-  double served_share_;
-  double held_kg_kg_;
-};
-
-std::vector<EffectParameter> parameters_of_humidifier(const SiteFacts&) {
-  return {
-      {.name = "served_share",
-       .unit = "share of the outdoor air",
-       .prior = UniformPrior{0.0, 1.0},
-       .neutral = 0.0},
-      {.name = "held_humidity_ratio",
-       .unit = "kg/kg",
-       .prior = TruncatedNormalPrior{.location = 0.0055, .sd = 0.0015, .min = 0.002, .max = 0.010},
-       .neutral = kAbsent,
-       .scan = {0.004, 0.005, 0.006, 0.007}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_humidifier(const SiteFacts&,
-                                                           std::span<const double> values, int) {
-  return std::make_unique<Humidifier>(values[0], values[1]);
-}
-
-}  // namespace
-
-Effect humidifier();
 
 Effect humidifier() {
   return {
@@ -73,8 +32,29 @@ Effect humidifier() {
            {"outdoor_air_amount",
             "Cold humid days: outdoor air also costs heat on them, humidification does not."},
            {"stack_infiltration", "Nights with the fans off: no humidifier runs then."}},
-      .parameters = parameters_of_humidifier,
-      .bind = bind_humidifier,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {
+            any_share("served_share", "share of the outdoor air"),
+            {.name = "held_humidity_ratio",
+             .unit = "kg/kg",
+             .prior =
+                 TruncatedNormalPrior{.location = 0.0055, .sd = 0.0015, .min = 0.002, .max = 0.010},
+             .neutral = kAbsent,
+             .scan = {0.004, 0.005, 0.006, 0.007}}};
+      },
+      // The model charges for the humidity above outdoor air, so if only a share of the air
+      // handlers has a humidifier, the humidity ratio is lowered accordingly. The larger of this
+      // and the drawn humidifier is charged.
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([served_share = values[0], held_kg_kg = values[1]](const DriverHour&,
+                                                                                StepOperation& op) {
+              const double lack_kg_kg =
+                  served_share * std::max(held_kg_kg - op.humidity_ratio, 0.0);
+              if (lack_kg_kg <= 0.0) return;
+              op.humidifier_kg_kg = std::max(op.humidifier_kg_kg, op.humidity_ratio + lack_kg_kg);
+            });
+          },
   };
 }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
@@ -10,7 +10,7 @@ namespace recald::diagnosis::effects {
 namespace {
 
 /// People at home on average, and how that differs between the days of a week.
-class HybridWork final : public model::hourly::Alteration {
+class HybridWork final : public Alteration {
  public:
   HybridWork(const model::Drivers& drivers, double at_home, double midweek,
              double monday_over_friday)
@@ -22,7 +22,7 @@ class HybridWork final : public model::hourly::Alteration {
     for (double& change : change_) change = std::max(change, -1.0);
   }
 
-  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
+  void operate(const DriverHour& hour, StepOperation& op) const override {
     if (hour.day != model::DayType::workday) return;
     change_presence(change_[hour.weekday], standby_, hour, op);
   }
@@ -32,26 +32,7 @@ class HybridWork final : public model::hourly::Alteration {
   std::array<double, 7> change_;
 };
 
-/// Where it has always been so, the mean is in the profile of the electricity meter, and the days
-/// alone tell.
-std::vector<EffectParameter> parameters_of_hybrid_work(const SiteFacts&) {
-  const auto difference = [](double sd) {
-    return TruncatedNormalPrior{.location = 0.0, .sd = sd, .min = -0.4, .max = 0.4};
-  };
-  constexpr const char* kUnit = "share of mean presence";
-  return {{.name = "at_home", .unit = kUnit, .prior = half_normal_below(0.25, 0.8), .neutral = 0.0},
-          {.name = "midweek", .unit = kUnit, .prior = difference(0.10), .neutral = 0.0},
-          {.name = "monday_over_friday", .unit = kUnit, .prior = difference(0.07), .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_hybrid_work(const SiteFacts& facts,
-                                                            std::span<const double> values, int) {
-  return std::make_unique<HybridWork>(facts.drivers, values[0], values[1], values[2]);
-}
-
 }  // namespace
-
-Effect hybrid_work();
 
 Effect hybrid_work() {
   return {
@@ -77,8 +58,26 @@ Effect hybrid_work() {
             "Compare counts of badges, Wi-Fi clients or lift rides by weekday with the air flow."},
            {"missing_holidays",
             "Whether single dates or every Monday and Friday stand out in the daily values."}},
-      .parameters = parameters_of_hybrid_work,
-      .bind = bind_hybrid_work,
+      // Where it has always been so, the mean is in the profile of the electricity meter, and the
+      // days alone tell.
+      .parameters = [](const SiteFacts&) -> Parameters {
+        const auto difference = [](double sd) {
+          return TruncatedNormalPrior{.location = 0.0, .sd = sd, .min = -0.4, .max = 0.4};
+        };
+        constexpr const char* kUnit = "share of mean presence";
+        return {{.name = "at_home",
+                 .unit = kUnit,
+                 .prior = half_normal_below(0.25, 0.8),
+                 .neutral = 0.0},
+                {.name = "midweek", .unit = kUnit, .prior = difference(0.10), .neutral = 0.0},
+                {.name = "monday_over_friday",
+                 .unit = kUnit,
+                 .prior = difference(0.07),
+                 .neutral = 0.0}};
+      },
+      .bind = [](const SiteFacts& facts, Values values, int) -> Altered {
+        return std::make_unique<HybridWork>(facts.drivers, values[0], values[1], values[2]);
+      },
   };
 }
 
