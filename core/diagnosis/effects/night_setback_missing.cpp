@@ -1,37 +1,8 @@
 /// Set-points are not relaxed when the rooms are unoccupied.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-class NightSetBackMissing final : public model::hourly::Alteration {
- public:
-  explicit NightSetBackMissing(double missing_share) : missing_share_(missing_share) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    op.heating_unoccupied_C += missing_share_ * (op.heating_occupied_C - op.heating_unoccupied_C);
-    op.cooling_unoccupied_C += missing_share_ * (op.cooling_occupied_C - op.cooling_unoccupied_C);
-  }
-
- private:
-  double missing_share_;
-};
-
-std::vector<EffectParameter> parameters_of_night_setback_missing(const SiteFacts&) {
-  return {{.name = "missing_share",
-           .unit = "share of the set-back",
-           .prior = UniformPrior{0.0, 1.0},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_night_setback_missing(
-    const SiteFacts&, std::span<const double> values, int) {
-  return std::make_unique<NightSetBackMissing>(values[0]);
-}
-
-}  // namespace
-
-Effect night_setback_missing();
 
 Effect night_setback_missing() {
   return {
@@ -65,8 +36,18 @@ Effect night_setback_missing() {
                      {"after_hours",
                       "Fan power at 02:00: later hours end at some time in the evening, a missing "
                       "set-back lasts until morning and all weekend."}},
-      .parameters = parameters_of_night_setback_missing,
-      .bind = bind_night_setback_missing,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {any_share("missing_share", "share of the set-back")};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([missing_share = values[0]](const DriverHour&, StepOperation& op) {
+              op.heating_unoccupied_C +=
+                  missing_share * (op.heating_occupied_C - op.heating_unoccupied_C);
+              op.cooling_unoccupied_C +=
+                  missing_share * (op.cooling_occupied_C - op.cooling_unoccupied_C);
+            });
+          },
   };
 }
 

@@ -1,37 +1,7 @@
 /// More or less minimum outdoor air than drawn.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-class OutdoorAirAmount final : public model::hourly::Alteration {
- public:
-  explicit OutdoorAirAmount(double change) : change_(change) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    op.outdoor_air_m3_s *= 1.0 + change_;
-  }
-
- private:
-  double change_;
-};
-
-std::vector<EffectParameter> parameters_of_outdoor_air_amount(const SiteFacts&) {
-  return {{.name = "change",
-           .unit = "share of the drawn outdoor air",
-           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.4, .min = -0.9, .max = 1.5},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_outdoor_air_amount(const SiteFacts&,
-                                                                   std::span<const double> values,
-                                                                   int) {
-  return std::make_unique<OutdoorAirAmount>(values[0]);
-}
-
-}  // namespace
-
-Effect outdoor_air_amount();
 
 Effect outdoor_air_amount() {
   return {
@@ -58,8 +28,18 @@ Effect outdoor_air_amount() {
             "Compare weather between 8 and 18 °C with hot and cold weather: the minimum amount "
             "matters in hot and cold weather."},
            {"deep_drying", "Heat in winter: outdoor air costs heat too, drying does not."}},
-      .parameters = parameters_of_outdoor_air_amount,
-      .bind = bind_outdoor_air_amount,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "change",
+                 .unit = "share of the drawn outdoor air",
+                 .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.4, .min = -0.9, .max = 1.5},
+                 .neutral = 0.0}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([change = values[0]](const DriverHour&, StepOperation& op) {
+              op.outdoor_air_m3_s *= 1.0 + change;
+            });
+          },
   };
 }
 

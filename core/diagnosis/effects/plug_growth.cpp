@@ -1,44 +1,8 @@
 /// The number of plugged-in devices grows or shrinks every year.
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/spanned_days.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect plug_growth();
-
-namespace {
-
-using model::hourly::StepOperation;
-
-/// Pivots at the middle of the record, because the plug profile is a mean over the record and
-/// growth from its first day would also raise that mean.
-class PlugGrowth final : public model::hourly::Alteration {
- public:
-  PlugGrowth(double per_year, double middle_day) : per_year_(per_year), middle_day_(middle_day) {}
-
-  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
-    const double years = (elapsed_days(hour) - middle_day_) / kDaysPerYear;
-    operation.plugs_W *= 1.0 + per_year_ * years;
-  }
-
- private:
-  double per_year_;
-  double middle_day_;
-};
-
-/// Bounds of the prior keep plugs positive over records of up to six years.
-std::vector<EffectParameter> parameters_of_plug_growth(const SiteFacts&) {
-  return {{.name = "growth",
-           .unit = "1/a",
-           .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.1, .min = -0.3, .max = 0.3},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_plug_growth(const SiteFacts& facts,
-                                                            std::span<const double> values, int) {
-  return std::make_unique<PlugGrowth>(values[0], 0.5 * spanned_days(facts.drivers));
-}
-
-}  // namespace
 
 Effect plug_growth() {
   return {
@@ -59,8 +23,24 @@ Effect plug_growth() {
           {{"equipment_step",
             "Electricity at night over the year: drift grows steadily, a step stays constant."},
            {"fouling", "Electricity on winter weekends: plugs also drift then."}},
-      .parameters = parameters_of_plug_growth,
-      .bind = bind_plug_growth};
+      // Bounds of the prior keep plugs positive over records of up to six years.
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "growth",
+                 .unit = "1/a",
+                 .prior = TruncatedNormalPrior{.location = 0.0, .sd = 0.1, .min = -0.3, .max = 0.3},
+                 .neutral = 0.0}};
+      },
+      // Pivots at the middle of the record, because the plug profile is a mean over the record and
+      // growth from its first day would also raise that mean.
+      .bind =
+          [](const SiteFacts& facts, Values values, int) {
+            return operating([per_year = values[0], middle_day = 0.5 * spanned_days(facts.drivers)](
+                                 const DriverHour& hour, StepOperation& operation) {
+              const double years = (elapsed_days(hour) - middle_day) / kDaysPerYear;
+              operation.plugs_W *= 1.0 + per_year * years;
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

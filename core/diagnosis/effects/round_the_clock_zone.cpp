@@ -1,39 +1,8 @@
 /// Part of the rooms is served day and night.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/plant_hours.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-/// The rooms' own electricity is already in the meter's profile; only air and set-points change.
-class RoundTheClockZone final : public model::hourly::Alteration {
- public:
-  explicit RoundTheClockZone(double floor_share) : floor_share_(floor_share) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    run_at_least(floor_share_, op);
-  }
-
- private:
-  double floor_share_;
-};
-
-std::vector<EffectParameter> parameters_of_round_the_clock_zone(const SiteFacts&) {
-  return {{.name = "floor_share",
-           .unit = "share of the daytime rooms",
-           .prior = UniformPrior{0.0, 0.6},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_round_the_clock_zone(const SiteFacts&,
-                                                                     std::span<const double> values,
-                                                                     int) {
-  return std::make_unique<RoundTheClockZone>(values[0]);
-}
-
-}  // namespace
-
-Effect round_the_clock_zone();
 
 Effect round_the_clock_zone() {
   return {
@@ -60,8 +29,20 @@ Effect round_the_clock_zone() {
             "Electricity at night: set-points alone hardly change it, running fans do."},
            {"constant_flow_pumps",
             "Whether the extra electricity at night also shows in chilled water and heat."}},
-      .parameters = parameters_of_round_the_clock_zone,
-      .bind = bind_round_the_clock_zone,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "floor_share",
+                 .unit = "share of the daytime rooms",
+                 .prior = UniformPrior{0.0, 0.6},
+                 .neutral = 0.0}};
+      },
+      // The rooms' own electricity is already in the meter's profile; only air and set-points
+      // change.
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([floor_share = values[0]](const DriverHour&, StepOperation& op) {
+              run_at_least(floor_share, op);
+            });
+          },
   };
 }
 

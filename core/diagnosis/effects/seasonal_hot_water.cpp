@@ -2,56 +2,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect seasonal_hot_water();
-
 namespace {
-
-using model::hourly::StepLoads;
-using model::hourly::StepOperation;
 
 constexpr double kWarmestWaterDay = 230.0;              // as in the models' own cold water
 constexpr double kWater_W_per_m3_dayK = 1163.0 / 24.0;  // rho c of a steady draw
 constexpr double kUsualLift_K = 45.0;                   // from the mains to the tap
-
-class SeasonalHotWater final : public model::hourly::Alteration {
- public:
-  SeasonalHotWater(double more_kW, double swing_K, double loop_loss_kW)
-      : more_kW_(more_kW), swing_K_(swing_K), loop_loss_kW_(loop_loss_kW) {}
-
-  void supply(const model::Building& building, const model::DriverHour& hour, const StepOperation&,
-              StepLoads& loads) const override {
-    const double angle = 2.0 * std::numbers::pi * (hour.day_of_year - kWarmestWaterDay) / 365.0;
-    const double colder_K = -swing_K_ * std::cos(angle);
-    const double drawn_W_K = kWater_W_per_m3_dayK * building.hot_water.volume_m3_day;
-    const double more_W = 1e3 * more_kW_ * (1.0 + colder_K / kUsualLift_K);
-    loads.hot_water_W += loads.hot_water_litres_share * (drawn_W_K * colder_K + more_W);
-    loads.hot_water_W += 1e3 * loop_loss_kW_;
-  }
-
- private:
-  double more_kW_;
-  double swing_K_;
-  double loop_loss_kW_;
-};
-
-std::vector<EffectParameter> parameters_of_seasonal_hot_water(const SiteFacts& facts) {
-  // Taps and loop about alike: little is lost at a time, but day and night.
-  const double share_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.06);
-  return {
-      {.name = "more_use", .unit = "kW", .prior = half_normal(share_kW), .neutral = 0.0},
-      {.name = "mains_swing", .unit = "K", .prior = half_normal_below(8.0, 20.0), .neutral = 0.0},
-      {.name = "loop_loss", .unit = "kW", .prior = half_normal(share_kW), .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_seasonal_hot_water(const SiteFacts&,
-                                                                   std::span<const double> values,
-                                                                   int) {
-  return std::make_unique<SeasonalHotWater>(values[0], values[1], values[2]);
-}
 
 }  // namespace
 
@@ -79,8 +38,32 @@ Effect seasonal_hot_water() {
                      {"ground_coupling", "The hot-water sub-meter, or steam on a summer weekend."},
                      {"humidifier",
                       "Compare steam on damp and on dry cold days at the same temperature."}},
-      .parameters = parameters_of_seasonal_hot_water,
-      .bind = bind_seasonal_hot_water};
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        // Taps and loop about alike: little is lost at a time, but day and night.
+        const double share_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.06);
+        return {
+            {.name = "more_use", .unit = "kW", .prior = half_normal(share_kW), .neutral = 0.0},
+            {.name = "mains_swing",
+             .unit = "K",
+             .prior = half_normal_below(8.0, 20.0),
+             .neutral = 0.0},
+            {.name = "loop_loss", .unit = "kW", .prior = half_normal(share_kW), .neutral = 0.0}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return supplying([more_kW = values[0], swing_K = values[1], loop_loss_kW = values[2]](
+                                 const model::Building& building, const DriverHour& hour,
+                                 const StepOperation&, StepLoads& loads) {
+              const double angle =
+                  2.0 * std::numbers::pi * (hour.day_of_year - kWarmestWaterDay) / 365.0;
+              const double colder_K = -swing_K * std::cos(angle);
+              const double drawn_W_K = kWater_W_per_m3_dayK * building.hot_water.volume_m3_day;
+              const double more_W = 1e3 * more_kW * (1.0 + colder_K / kUsualLift_K);
+              loads.hot_water_W += loads.hot_water_litres_share * (drawn_W_K * colder_K + more_W);
+              loads.hot_water_W += 1e3 * loop_loss_kW;
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

@@ -3,7 +3,7 @@
 
 #include "core/absent.hpp"
 #include "core/diagnosis/date_table.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
 
 namespace recald::diagnosis::effects {
@@ -64,43 +64,7 @@ const DateTable& breaks_of(double calendar) {
   return calendar < 2.5 ? college : university;
 }
 
-class SemesterCalendar final : public model::hourly::Alteration {
- public:
-  SemesterCalendar(const model::Drivers& drivers, double absent_share, double calendar)
-      : standby_(drivers), breaks_(&breaks_of(calendar)), absent_share_(absent_share) {}
-
-  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
-    if (breaks_->contains(hour.date)) change_presence(-absent_share_, standby_, hour, op);
-  }
-
- private:
-  StandbyLoads standby_;
-  const DateTable* breaks_;  // Of static storage.
-  double absent_share_;
-};
-
-std::vector<EffectParameter> parameters_of_semester_calendar(const SiteFacts&) {
-  return {{.name = "absent_share",
-           .unit = "share of the people",
-           .prior = UniformPrior{0.0, 0.7},
-           .neutral = 0.0},
-          {.name = "calendar",
-           .unit = "1: school, 2: college, 3: university",
-           .prior = UniformPrior{0.5, 3.5},
-           .neutral = kAbsent,
-           .scan = {1.0, 2.0, 3.0},
-           .choice = true}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_semester_calendar(const SiteFacts& facts,
-                                                                  std::span<const double> values,
-                                                                  int) {
-  return std::make_unique<SemesterCalendar>(facts.drivers, values[0], values[1]);
-}
-
 }  // namespace
-
-Effect semester_calendar();
 
 Effect semester_calendar() {
   return {
@@ -124,8 +88,25 @@ Effect semester_calendar() {
                      {"solar_gain_change",
                       "Electricity: shading does not change it, missing people do. The academic "
                       "calendar settles it."}},
-      .parameters = parameters_of_semester_calendar,
-      .bind = bind_semester_calendar,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "absent_share",
+                 .unit = "share of the people",
+                 .prior = UniformPrior{0.0, 0.7},
+                 .neutral = 0.0},
+                {.name = "calendar",
+                 .unit = "1: school, 2: college, 3: university",
+                 .prior = UniformPrior{0.5, 3.5},
+                 .neutral = kAbsent,
+                 .scan = {1.0, 2.0, 3.0},
+                 .choice = true}};
+      },
+      .bind =
+          [](const SiteFacts& facts, Values values, int) {
+            return operating([standby = StandbyLoads{facts.drivers}, breaks = &breaks_of(values[1]),
+                              absent_share = values[0]](const DriverHour& hour, StepOperation& op) {
+              if (breaks->contains(hour.date)) change_presence(-absent_share, standby, hour, op);
+            });
+          },
   };
 }
 

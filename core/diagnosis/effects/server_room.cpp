@@ -2,31 +2,26 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect server_room();
-
 namespace {
-
-using model::hourly::StepLoads;
-using model::hourly::StepOperation;
 
 /// Its cooled heat bypasses the rooms and the air handlers. The plug profile comes from the
 /// electricity meter, so it may already contain part of the load, as heat in the rooms: that part
 /// is subtracted from them here and added again as electricity behind the zones.
-class ServerRoom final : public model::hourly::Alteration {
+class ServerRoom final : public Alteration {
  public:
   ServerRoom(double power_kW, double cooled_share, double share_in_plugs)
       : power_W_(1e3 * power_kW), cooled_share_(cooled_share), share_in_plugs_(share_in_plugs) {}
 
-  void operate(const model::DriverHour&, StepOperation& operation) const override {
+  void operate(const DriverHour&, StepOperation& operation) const override {
     operation.plugs_W = std::max(operation.plugs_W - share_in_plugs_ * power_W_, 0.0);
     operation.zone_gain_W += (1.0 - cooled_share_) * power_W_;
   }
 
-  void supply(const model::Building&, const model::DriverHour&, const StepOperation&,
+  void supply(const model::Building&, const DriverHour&, const StepOperation&,
               StepLoads& loads) const override {
     loads.plugs_W += power_W_;
     loads.sensible_cooling_W += cooled_share_ * power_W_;
@@ -37,28 +32,6 @@ class ServerRoom final : public model::hourly::Alteration {
   double cooled_share_;
   double share_in_plugs_;
 };
-
-std::vector<EffectParameter> parameters_of_server_room(const SiteFacts& facts) {
-  const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.20);
-  const double none = kAbsent;
-  const UniformPrior any_share{.min = 0.0, .max = 1.0};
-  return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
-          {.name = "cooled_share",
-           .unit = "-",
-           .prior = any_share,
-           .neutral = none,
-           .scan = {0.0, 0.5, 1.0}},
-          {.name = "share_in_plugs",
-           .unit = "-",
-           .prior = any_share,
-           .neutral = none,
-           .scan = {0.0, 1.0}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_server_room(const SiteFacts&,
-                                                            std::span<const double> values, int) {
-  return std::make_unique<ServerRoom>(values[0], values[1], values[2]);
-}
 
 }  // namespace
 
@@ -85,8 +58,20 @@ Effect server_room() {
                       "settles it."},
                      {"equipment_step",
                       "A clamp meter on the room's feeder, and cooling on winter nights."}},
-      .parameters = parameters_of_server_room,
-      .bind = bind_server_room};
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        const double sd_kW = share_of_mean_kW(facts, metering::Utility::electricity, 0.20);
+        return {{.name = "power", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0},
+                {.name = "cooled_share",
+                 .unit = "-",
+                 .prior = UniformPrior{0.0, 1.0},
+                 .neutral = kAbsent,
+                 .scan = {0.0, 0.5, 1.0}},
+                either_share("share_in_plugs")};
+      },
+      .bind = [](const SiteFacts&, Values values, int) -> Altered {
+        return std::make_unique<ServerRoom>(values[0], values[1], values[2]);
+      },
+  };
 }
 
 }  // namespace recald::diagnosis::effects
