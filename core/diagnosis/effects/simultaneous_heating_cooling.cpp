@@ -1,28 +1,11 @@
 /// Heating and cooling work against each other.
 #include <algorithm>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {
-
-class SimultaneousHeatingCooling final : public model::hourly::Alteration {
- public:
-  explicit SimultaneousHeatingCooling(double leaking_kW) : leaking_kW_(leaking_kW) {}
-
-  void supply(const model::Building&, const model::DriverHour&, const model::hourly::StepOperation&,
-              model::hourly::StepLoads& loads) const override {
-    // What leaks is no waste while as much heat is wanted.
-    const double leaking_W = 1000.0 * leaking_kW_ * loads.running_share;
-    const double wasted_W = std::max(leaking_W - loads.reheat_W - loads.zone_heating_W, 0.0);
-    loads.sensible_cooling_W += wasted_W;
-    loads.reheat_W += wasted_W;
-  }
-
- private:
-  double leaking_kW_;
-};
 
 /// Mean of chilled water; with an own chiller, that of heat; else 10 W/m².
 double reheat_reference_kW(const SiteFacts& facts) {
@@ -32,22 +15,7 @@ double reheat_reference_kW(const SiteFacts& facts) {
   return heating_kW > 0.0 ? heating_kW : 0.01 * facts.building.floor_area_m2;
 }
 
-std::vector<EffectParameter> parameters_of_simultaneous_heating_cooling(const SiteFacts& facts) {
-  // What leaks. Only what leaks beyond the heat that is wanted is waste.
-  return {{.name = "wasted_heat",
-           .unit = "kW",
-           .prior = half_normal(0.1 * reheat_reference_kW(facts)),
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_simultaneous_heating_cooling(
-    const SiteFacts&, std::span<const double> values, int) {
-  return std::make_unique<SimultaneousHeatingCooling>(values[0]);
-}
-
 }  // namespace
-
-Effect simultaneous_heating_cooling();
 
 Effect simultaneous_heating_cooling() {
   return {
@@ -80,8 +48,25 @@ Effect simultaneous_heating_cooling() {
            {"scale_fault",
             "Whether an error of a single meter explains it: close the heating valves for an hour "
             "and check that both meters fall."}},
-      .parameters = parameters_of_simultaneous_heating_cooling,
-      .bind = bind_simultaneous_heating_cooling,
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        // What leaks. Only what leaks beyond the heat that is wanted is waste.
+        return {{.name = "wasted_heat",
+                 .unit = "kW",
+                 .prior = half_normal(0.1 * reheat_reference_kW(facts)),
+                 .neutral = 0.0}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return supplying([leaking_kW = values[0]](const model::Building&, const DriverHour&,
+                                                      const StepOperation&, StepLoads& loads) {
+              // What leaks is no waste while as much heat is wanted.
+              const double leaking_W = 1000.0 * leaking_kW * loads.running_share;
+              const double wasted_W =
+                  std::max(leaking_W - loads.reheat_W - loads.zone_heating_W, 0.0);
+              loads.sensible_cooling_W += wasted_W;
+              loads.reheat_W += wasted_W;
+            });
+          },
   };
 }
 

@@ -2,52 +2,13 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect solar_gain_change();
-
 namespace {
-
-using model::hourly::StepOperation;
 
 // Blinds go down room by room: the change sets in over this much sun below the threshold.
 constexpr double kComingIn_W_m2 = 100.0;
-
-class SolarGainChange final : public model::hourly::Alteration {
- public:
-  SolarGainChange(double reduction, double above_W_m2)
-      : reduction_(reduction), above_W_m2_(above_W_m2) {}
-
-  void operate(const model::DriverHour& hour, StepOperation& operation) const override {
-    const double excess_W_m2 = hour.global_horizontal_W_m2 - above_W_m2_;
-    const double share = std::clamp(1.0 + excess_W_m2 / kComingIn_W_m2, 0.0, 1.0);
-    operation.solar_share *= 1.0 - reduction_ * share;
-  }
-
- private:
-  double reduction_;
-  double above_W_m2_;
-};
-
-std::vector<EffectParameter> parameters_of_solar_gain_change(const SiteFacts&) {
-  return {{.name = "solar_reduction",
-           .unit = "-",
-           .prior = UniformPrior{.min = -0.5, .max = 0.5},
-           .neutral = 0.0},
-          {.name = "solar_threshold",
-           .unit = "W/m2",
-           .prior = UniformPrior{.min = 0.0, .max = 600.0},
-           .neutral = kAbsent,
-           .scan = {0.0, 250.0, 500.0}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_solar_gain_change(const SiteFacts&,
-                                                                  std::span<const double> values,
-                                                                  int) {
-  return std::make_unique<SolarGainChange>(values[0], values[1]);
-}
 
 }  // namespace
 
@@ -74,8 +35,27 @@ Effect solar_gain_change() {
                       "Compare sunny with cloudy weekends at the same temperature."},
                      {"economiser_failed",
                       "The mixed-air temperature at 15 °C outdoors on an overcast working day."}},
-      .parameters = parameters_of_solar_gain_change,
-      .bind = bind_solar_gain_change};
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "solar_reduction",
+                 .unit = "-",
+                 .prior = UniformPrior{.min = -0.5, .max = 0.5},
+                 .neutral = 0.0},
+                {.name = "solar_threshold",
+                 .unit = "W/m2",
+                 .prior = UniformPrior{.min = 0.0, .max = 600.0},
+                 .neutral = kAbsent,
+                 .scan = {0.0, 250.0, 500.0}}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([reduction = values[0], above_W_m2 = values[1]](
+                                 const DriverHour& hour, StepOperation& operation) {
+              const double excess_W_m2 = hour.global_horizontal_W_m2 - above_W_m2;
+              const double share = std::clamp(1.0 + excess_W_m2 / kComingIn_W_m2, 0.0, 1.0);
+              operation.solar_share *= 1.0 - reduction * share;
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

@@ -2,25 +2,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect stack_infiltration();
-
 namespace {
-
-using model::hourly::StepOperation;
 
 // 10 m high and 10 K difference. The factor is given for this reference, because its value per
 // square root of a metre and a kelvin would be meaningless to readers.
 constexpr double kReference_mK = 100.0;
 
-class StackInfiltration final : public model::hourly::Alteration {
+class StackInfiltration final : public Alteration {
  public:
   StackInfiltration(double factor, double height_m) : factor_(factor), height_m_(height_m) {}
 
-  void operate(const model::DriverHour&, StepOperation& operation) const override {
+  void operate(const DriverHour&, StepOperation& operation) const override {
     const double draught = std::sqrt(height_m_ * difference_K(operation) / kReference_mK);
     operation.infiltration_factor *= 1.0 + factor_ * draught;
   }
@@ -38,17 +34,6 @@ class StackInfiltration final : public model::hourly::Alteration {
   double factor_;
   double height_m_;
 };
-
-std::vector<EffectParameter> parameters_of_stack_infiltration(const SiteFacts&) {
-  return {{.name = "stack_factor", .unit = "-", .prior = half_normal(0.5), .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_stack_infiltration(const SiteFacts& facts,
-                                                                   std::span<const double> values,
-                                                                   int) {
-  const double height_m = facts.building.storeys * facts.building.storey_height_m;
-  return std::make_unique<StackInfiltration>(values[0], height_m);
-}
 
 }  // namespace
 
@@ -73,8 +58,14 @@ Effect stack_infiltration() {
             "Room temperature at 3 o'clock at night: with a set-back it falls, whatever the "
             "draught."},
            {"wind_infiltration", "Compare heating on calm and on windy nights, both very cold."}},
-      .parameters = parameters_of_stack_infiltration,
-      .bind = bind_stack_infiltration};
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "stack_factor", .unit = "-", .prior = half_normal(0.5), .neutral = 0.0}};
+      },
+      .bind = [](const SiteFacts& facts, Values values, int) -> Altered {
+        const double height_m = facts.building.storeys * facts.building.storey_height_m;
+        return std::make_unique<StackInfiltration>(values[0], height_m);
+      },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

@@ -1,40 +1,8 @@
 /// Steam that is paid for but heats no room.
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect steam_trap_leak();
-
-namespace {
-
-using model::hourly::StepLoads;
-using model::hourly::StepOperation;
-
-class SteamTrapLeak final : public model::hourly::Alteration {
- public:
-  explicit SteamTrapLeak(double loss_kW) : loss_kW_(loss_kW) {}
-
-  void supply(const model::Building&, const model::DriverHour&, const StepOperation&,
-              StepLoads& loads) const override {
-    loads.base_heat_W += 1e3 * loss_kW_;
-  }
-
- private:
-  double loss_kW_;
-};
-
-std::vector<EffectParameter> parameters_of_steam_trap_leak(const SiteFacts& facts) {
-  const double sd_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.15);
-  return {{.name = "heat_loss", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_steam_trap_leak(const SiteFacts&,
-                                                                std::span<const double> values,
-                                                                int) {
-  return std::make_unique<SteamTrapLeak>(values[0]);
-}
-
-}  // namespace
 
 Effect steam_trap_leak() {
   return {
@@ -56,8 +24,18 @@ Effect steam_trap_leak() {
             "Chilled water on the same nights: reheat raises both, a leak only the heat."},
            {"scale_fault",
             "Compare the ratio of metered to expected heat in January and in July."}},
-      .parameters = parameters_of_steam_trap_leak,
-      .bind = bind_steam_trap_leak};
+      .parameters = [](const SiteFacts& facts) -> Parameters {
+        const double sd_kW = share_of_mean_kW(facts, metering::Utility::heating, 0.15);
+        return {{.name = "heat_loss", .unit = "kW", .prior = half_normal(sd_kW), .neutral = 0.0}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return supplying([loss_kW = values[0]](const model::Building&, const DriverHour&,
+                                                   const StepOperation&, StepLoads& loads) {
+              loads.base_heat_W += 1e3 * loss_kW;
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

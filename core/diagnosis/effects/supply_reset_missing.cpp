@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
@@ -10,43 +10,7 @@ namespace {
 
 constexpr double kDeepestReset_K = 5.0;  // Usual span of reset controls: 13…18 °C.
 
-/// The catalogue adds r·on·(θ_r − θ_e)₊ to the output for chilled water and heat. Here the
-/// supply air is made colder and the model does the rest: extra reheat is limited at least flow,
-/// free cooling does not use chilled water, and fans move less air. ρ c V_min times this slope
-/// is the catalogue's r.
-class SupplyResetMissing final : public model::hourly::Alteration {
- public:
-  SupplyResetMissing(double reset_K_K, double balance_C)
-      : reset_K_K_(reset_K_K), balance_C_(balance_C) {}
-
-  void operate(const model::DriverHour&, model::hourly::StepOperation& op) const override {
-    const double cold_K = std::max(balance_C_ - op.dry_bulb_C, 0.0);
-    op.supply_C -= std::min(reset_K_K_ * cold_K, kDeepestReset_K);
-  }
-
- private:
-  double reset_K_K_;
-  double balance_C_;
-};
-
-std::vector<EffectParameter> parameters_of_supply_reset_missing(const SiteFacts&) {
-  return {{.name = "reset_slope", .unit = "K/K", .prior = half_normal(0.25), .neutral = 0.0},
-          {.name = "balance_temperature",
-           .unit = "degC",
-           .prior = TruncatedNormalPrior{.location = 18.0, .sd = 3.0, .min = 8.0, .max = 28.0},
-           .neutral = kAbsent,
-           .scan = {14.0, 18.0, 22.0}}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_supply_reset_missing(const SiteFacts&,
-                                                                     std::span<const double> values,
-                                                                     int) {
-  return std::make_unique<SupplyResetMissing>(values[0], values[1]);
-}
-
 }  // namespace
-
-Effect supply_reset_missing();
 
 Effect supply_reset_missing() {
   return {
@@ -76,8 +40,27 @@ Effect supply_reset_missing() {
            {"economiser_failed",
             "Heat on the same mild days: only the missing reset raises it. A supply-air sensor "
             "over a week settles it."}},
-      .parameters = parameters_of_supply_reset_missing,
-      .bind = bind_supply_reset_missing,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {
+            {.name = "reset_slope", .unit = "K/K", .prior = half_normal(0.25), .neutral = 0.0},
+            {.name = "balance_temperature",
+             .unit = "degC",
+             .prior = TruncatedNormalPrior{.location = 18.0, .sd = 3.0, .min = 8.0, .max = 28.0},
+             .neutral = kAbsent,
+             .scan = {14.0, 18.0, 22.0}}};
+      },
+      // The catalogue adds r·on·(θ_r − θ_e)₊ to the output for chilled water and heat. Here the
+      // supply air is made colder and the model does the rest: extra reheat is limited at least
+      // flow, free cooling does not use chilled water, and fans move less air. ρ c V_min times this
+      // slope is the catalogue's r.
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return operating([reset_K_K = values[0], balance_C = values[1]](const DriverHour&,
+                                                                            StepOperation& op) {
+              const double cold_K = std::max(balance_C - op.dry_bulb_C, 0.0);
+              op.supply_C -= std::min(reset_K_K * cold_K, kDeepestReset_K);
+            });
+          },
   };
 }
 

@@ -1,37 +1,7 @@
 /// The building stores more or less heat than typical for its construction.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 
 namespace recald::diagnosis::effects {
-
-Effect thermal_mass();
-
-namespace {
-
-class ThermalMass final : public model::hourly::Alteration {
- public:
-  explicit ThermalMass(double factor) : factor_(factor) {}
-
-  void rebuild(model::Building& building) const override {
-    building.heat_capacity_J_m2K *= factor_;
-  }
-
- private:
-  double factor_;
-};
-
-std::vector<EffectParameter> parameters_of_thermal_mass(const SiteFacts&) {
-  return {{.name = "mass_factor",
-           .unit = "-",
-           .prior = LogNormalPrior{.median = 1.0, .log_sd = 0.5, .min = 0.2, .max = 5.0},
-           .neutral = 1.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_thermal_mass(const SiteFacts&,
-                                                             std::span<const double> values, int) {
-  return std::make_unique<ThermalMass>(values[0]);
-}
-
-}  // namespace
 
 Effect thermal_mass() {
   return {
@@ -52,8 +22,19 @@ Effect thermal_mass() {
                      {"night_setback_missing",
                       "Room temperature after a clear night: with a heavy mass it falls "
                       "slowly, with a missing set-back it stays constant."}},
-      .parameters = parameters_of_thermal_mass,
-      .bind = bind_thermal_mass};
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {{.name = "mass_factor",
+                 .unit = "-",
+                 .prior = LogNormalPrior{.median = 1.0, .log_sd = 0.5, .min = 0.2, .max = 5.0},
+                 .neutral = 1.0}};
+      },
+      .bind =
+          [](const SiteFacts&, Values values, int) {
+            return rebuilding([factor = values[0]](model::Building& building) {
+              building.heat_capacity_J_m2K *= factor;
+            });
+          },
+  };
 }
 
 }  // namespace recald::diagnosis::effects

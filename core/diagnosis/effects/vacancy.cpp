@@ -1,40 +1,9 @@
 /// One long absence of the people.
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-/// The plant keeps its timetable, as mostly in 2020; the wrapper adds the window.
-class Vacancy final : public model::hourly::Alteration {
- public:
-  Vacancy(const model::Drivers& drivers, double absent_share)
-      : standby_(drivers), absent_share_(absent_share) {}
-
-  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
-    change_presence(-absent_share_, standby_, hour, op);
-  }
-
- private:
-  StandbyLoads standby_;
-  double absent_share_;
-};
-
-std::vector<EffectParameter> parameters_of_vacancy(const SiteFacts&) {
-  return {{.name = "absent_share",
-           .unit = "share of the people",
-           .prior = UniformPrior{0.0, 1.0},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_vacancy(const SiteFacts& facts,
-                                                        std::span<const double> values, int) {
-  return std::make_unique<Vacancy>(facts.drivers, values[0]);
-}
-
-}  // namespace
-
-Effect vacancy();
 
 Effect vacancy() {
   return {
@@ -59,8 +28,17 @@ Effect vacancy() {
                      {"phase_lost",
                       "Chilled water: a lost phase of the electricity meter does not show there."},
                      {"missing_holidays", "The length: single days or many weeks."}},
-      .parameters = parameters_of_vacancy,
-      .bind = bind_vacancy,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {any_share("absent_share", "share of the people")};
+      },
+      // The plant keeps its timetable, as mostly in 2020; the wrapper adds the window.
+      .bind =
+          [](const SiteFacts& facts, Values values, int) {
+            return operating([standby = StandbyLoads{facts.drivers}, absent_share = values[0]](
+                                 const DriverHour& hour, StepOperation& op) {
+              change_presence(-absent_share, standby, hour, op);
+            });
+          },
   };
 }
 

@@ -1,55 +1,9 @@
 /// The plant runs on Saturdays or Sundays.
-#include <algorithm>
-
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/plant_hours.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
-namespace {
-
-/// People, lights and plugs do not change: the last two come from the meter's own profile of
-/// Saturdays and Sundays.
-class WeekendOperation final : public model::hourly::Alteration {
- public:
-  WeekendOperation(const model::SetPoints& set_points, double saturday_share, double sunday_share)
-      : from_hour_(set_points.occupied_from_hour),
-        to_hour_(set_points.occupied_to_hour),
-        saturday_share_(saturday_share),
-        sunday_share_(sunday_share) {}
-
-  void operate(const model::DriverHour& hour, model::hourly::StepOperation& op) const override {
-    if (hour.local_hour < from_hour_ || hour.local_hour >= to_hour_) return;
-    if (hour.weekday == 6) run_at_least(saturday_share_, op);
-    if (hour.weekday == 0) run_at_least(sunday_share_, op);
-  }
-
- private:
-  int from_hour_;
-  int to_hour_;
-  double saturday_share_;
-  double sunday_share_;
-};
-
-std::vector<EffectParameter> parameters_of_weekend_operation(const SiteFacts&) {
-  return {{.name = "saturday_share",
-           .unit = "share of a weekday's plant",
-           .prior = UniformPrior{0.0, 1.0},
-           .neutral = 0.0},
-          {.name = "sunday_share",
-           .unit = "share of a weekday's plant",
-           .prior = UniformPrior{0.0, 1.0},
-           .neutral = 0.0}};
-}
-
-std::unique_ptr<model::hourly::Alteration> bind_weekend_operation(const SiteFacts& facts,
-                                                                  std::span<const double> values,
-                                                                  int) {
-  return std::make_unique<WeekendOperation>(facts.building.set_points, values[0], values[1]);
-}
-
-}  // namespace
-
-Effect weekend_operation();
 
 Effect weekend_operation() {
   return {
@@ -79,8 +33,23 @@ Effect weekend_operation() {
             "follow the sun, the plant follows the clock."},
            {"solar_gain_change",
             "Compare sunny with cloudy weekends at the same outdoor temperature."}},
-      .parameters = parameters_of_weekend_operation,
-      .bind = bind_weekend_operation,
+      .parameters = [](const SiteFacts&) -> Parameters {
+        return {any_share("saturday_share", "share of a weekday's plant"),
+                any_share("sunday_share", "share of a weekday's plant")};
+      },
+      // People, lights and plugs do not change: the last two come from the meter's own profile of
+      // Saturdays and Sundays.
+      .bind =
+          [](const SiteFacts& facts, Values values, int) {
+            return operating([from_hour = facts.building.set_points.occupied_from_hour,
+                              to_hour = facts.building.set_points.occupied_to_hour,
+                              saturday_share = values[0],
+                              sunday_share = values[1]](const DriverHour& hour, StepOperation& op) {
+              if (hour.local_hour < from_hour || hour.local_hour >= to_hour) return;
+              if (hour.weekday == 6) run_at_least(saturday_share, op);
+              if (hour.weekday == 0) run_at_least(sunday_share, op);
+            });
+          },
   };
 }
 
