@@ -8,9 +8,9 @@ namespace {
 
 /// Air handlers run into the evening: cleaners and people working overtime press the override
 /// button, and sometimes nobody resets it.
-class AfterHours final : public HiddenEffect {
+class AfterHours final : public EffectWithSettings {
  public:
-  AfterHours(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void plan(metering::Day day, Timetable& timetable) override {
     // Monday to Friday. All factors together average 1.
@@ -24,9 +24,6 @@ class AfterHours final : public HiddenEffect {
     const double factor = forgotten ? 2.5 : mood * evenings[std::min(weekday, 4U)];
     air.to_h = std::max(air.to_h, std::min(24.0, air.to_h + settings_.strength * factor));
   }
-
- private:
-  EffectSettings settings_;
 };
 
 }  // namespace

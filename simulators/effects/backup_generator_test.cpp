@@ -9,10 +9,10 @@ namespace {
 
 /// Once a month the building runs on its own generator for some hours. The load on it disappears
 /// from the meter; the generator burns oil that is not metered.
-class BackupGeneratorTest final : public HiddenEffect {
+class BackupGeneratorTest final : public EffectWithSettings {
  public:
-  BackupGeneratorTest(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), carried_share_(settings_.rng.uniform(0.8, 0.97)) {}
+  BackupGeneratorTest(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), carried_share_(settings_.rng.uniform(0.8, 0.97)) {}
 
   void plan(metering::Day day, Timetable& timetable) override {
     const std::chrono::year_month month = day.year() / day.month();
@@ -36,7 +36,6 @@ class BackupGeneratorTest final : public HiddenEffect {
     start_h_ = settings_.rng.uniform(6.0, 10.0);
   }
 
-  EffectSettings settings_;
   double carried_share_;  ///< Of the building's electricity.
   std::chrono::year_month month_{};
   std::optional<metering::Day> due_;  ///< The test of `month_`, on the first working day from then.

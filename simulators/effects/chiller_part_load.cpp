@@ -11,10 +11,10 @@ constexpr double kStart = 0.04;
 constexpr double kStop = 0.015;
 
 /// The compressor hardly unloads: it recirculates hot gas, and the drives use the same power.
-class ChillerPartLoad final : public HiddenEffect {
+class ChillerPartLoad final : public EffectWithSettings {
  public:
   ChillerPartLoad(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         capacity_W_(1000.0 * drawings.chilled_water_design_kW),
         full_power_W_(capacity_W_ / drawings.chiller_cop),
         chiller_(kStop, kStart) {}
@@ -27,7 +27,6 @@ class ChillerPartLoad final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double capacity_W_;
   double full_power_W_;
   Hysteresis chiller_;

@@ -7,9 +7,9 @@ namespace recald::simulators {
 namespace {
 
 /// The meter's clock is fast, so that it stamps ten o'clock too early, or slow.
-class ClockOffset final : public HiddenEffect {
+class ClockOffset final : public EffectWithSettings {
  public:
-  ClockOffset(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void distort(const MeterRecord& record) const override {
     if (settings_.meter != record.utility || settings_.strength == 0.0) return;
@@ -21,9 +21,6 @@ class ClockOffset final : public HiddenEffect {
       record.shown_kW[slot] = shown_between(right_kW, static_cast<double>(slot) - fast_slots);
     }
   }
-
- private:
-  EffectSettings settings_;
 };
 
 }  // namespace

@@ -8,10 +8,10 @@ namespace {
 
 /// A canteen kitchen: cooks in the morning, serves at noon, then washes up. It uses gas if the
 /// building has any. The hood removes the heat, and air from the rooms with it.
-class Cooking final : public HiddenEffect {
+class Cooking final : public EffectWithSettings {
  public:
   Cooking(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         with_gas_(drawings.heating == HeatingPlant::boiler),
         full_house_(drawings.floor_area_m2() * drawings.occupancy_person_m2) {}
 
@@ -64,7 +64,6 @@ class Cooking final : public HiddenEffect {
     return shape / (full_hours * 3600.0);
   }
 
-  EffectSettings settings_;
   bool with_gas_;
   double full_house_;          ///< Number of people when everybody is there.
   double guests_share_ = 0.0;  ///< Today.

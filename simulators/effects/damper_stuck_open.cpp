@@ -7,10 +7,10 @@ namespace {
 
 /// The outdoor-air damper's linkage slips: the blades stay open wherever the actuator is. After
 /// each repair they stick in a slightly different position.
-class DamperStuckOpen final : public HiddenEffect {
+class DamperStuckOpen final : public EffectWithSettings {
  public:
-  DamperStuckOpen(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), position_(settings_.rng.uniform(kLeast, kMost)) {}
+  DamperStuckOpen(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), position_(settings_.rng.uniform(kLeast, kMost)) {}
 
   void plan(metering::Day /*day*/, Timetable& /*timetable*/) override {
     const bool worked_on = settings_.rng.uniform() < 1.0 / kDaysBetweenVisits;
@@ -29,7 +29,6 @@ class DamperStuckOpen final : public HiddenEffect {
   static constexpr double kMost = 1.15;
   static constexpr double kDaysBetweenVisits = 90.0;
 
-  EffectSettings settings_;
   double position_;  ///< Relative to the strength.
 };
 

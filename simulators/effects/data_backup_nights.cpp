@@ -8,10 +8,11 @@ constexpr unsigned kNightsBefore = 3;  ///< The last nights of a month.
 constexpr unsigned kNightsAfter = 2;   ///< The first ones of the next.
 
 /// At the turn of the month the servers compute all night: month-end accounts, full backups.
-class DataBackupNights final : public HiddenEffect {
+class DataBackupNights final : public EffectWithSettings {
  public:
   DataBackupNights(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), jobs_W_(settings.strength * drawings.floor_area_m2()) {}
+      : EffectWithSettings(settings, drawings),
+        jobs_W_(settings.strength * drawings.floor_area_m2()) {}
 
   void plan(metering::Day day, Timetable& /*timetable*/) override {
     last_night_ = tonight_;
@@ -45,7 +46,6 @@ class DataBackupNights final : public HiddenEffect {
     return date <= kNightsAfter || date > month_days - kNightsBefore;
   }
 
-  EffectSettings settings_;
   double jobs_W_;
   Night tonight_;
   Night last_night_;

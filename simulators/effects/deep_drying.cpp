@@ -9,10 +9,10 @@ namespace {
 
 /// Some rooms must be dry (archives, instruments): on humid days the coils run colder than the
 /// supply set-point requires.
-class DeepDrying final : public HiddenEffect {
+class DeepDrying final : public EffectWithSettings {
  public:
   DeepDrying(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), dry_to_C_(drawings.supply_C - settings.strength) {}
+      : EffectWithSettings(settings, drawings), dry_to_C_(drawings.supply_C - settings.strength) {}
 
   void operate(const Moment& now, Operation& operation) override {
     const Outdoors& outdoors = now.outdoors;
@@ -25,7 +25,6 @@ class DeepDrying final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double dry_to_C_;
   Hysteresis humid_{12.0, 14.0};  ///< Outdoor dew point, degC.
 };

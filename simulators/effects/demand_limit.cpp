@@ -18,10 +18,10 @@ constexpr double kCatchUp = 0.10;  ///< Of the plugs, after a cut, until they ha
 /// Keeps electricity below a cap on hot afternoons: raises set-points, dims lights, delays
 /// machines. Afterwards rooms are cooled down again and machines catch up. The cap is below the
 /// highest demand that the controller has seen so far.
-class DemandLimit final : public HiddenEffect {
+class DemandLimit final : public EffectWithSettings {
  public:
-  DemandLimit(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), demand_kW_(900.0) {}
+  DemandLimit(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), demand_kW_(900.0) {}
 
   void operate(const Moment& now, Operation& operation) override {
     if (settings_.strength <= 0.0 || !settings_.covers(now.local.date)) return;
@@ -62,7 +62,6 @@ class DemandLimit final : public HiddenEffect {
     return share;
   }
 
-  EffectSettings settings_;
   SlowValue demand_kW_;  ///< Mean of about a quarter of an hour, as utilities charge it.
   double highest_kW_ = 0.0;
   double cut_ = 0.0;          ///< 1: everything.

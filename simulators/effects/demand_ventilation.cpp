@@ -8,10 +8,10 @@ namespace {
 
 /// Carbon-dioxide sensors throttle the outdoor air to the number of people present. The gas builds
 /// up and decays with the room air, so the dampers lag behind the people.
-class DemandVentilation final : public HiddenEffect {
+class DemandVentilation final : public EffectWithSettings {
  public:
-  DemandVentilation(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), measured_people_(kRoomAirChange_s) {}
+  DemandVentilation(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), measured_people_(kRoomAirChange_s) {}
 
   void operate(const Moment& now, Operation& operation) override {
     const double people = measured_people_.follow(now.people_share, now.step_s);
@@ -25,7 +25,6 @@ class DemandVentilation final : public HiddenEffect {
   static constexpr double kFullHouse = 0.75;   ///< Present / assigned at full outdoor air.
   static constexpr double kFloorShare = 0.25;  ///< For emissions of floors and furniture.
 
-  EffectSettings settings_;
   SlowValue measured_people_;
 };
 

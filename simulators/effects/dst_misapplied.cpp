@@ -28,10 +28,9 @@ double fast_h(metering::Instant t, const metering::LocalCalendar& calendar) {
 }
 
 /// The logger ignores summer time where it is used, and applies it where it is not.
-class DstMisapplied final : public HiddenEffect {
+class DstMisapplied final : public EffectWithSettings {
  public:
-  DstMisapplied(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void distort(const MeterRecord& record) const override {
     if (settings_.strength == 0.0) return;
@@ -44,9 +43,6 @@ class DstMisapplied final : public HiddenEffect {
       record.shown_kW[slot] = shown_between(right_kW, static_cast<double>(slot) - fast_slots);
     }
   }
-
- private:
-  EffectSettings settings_;
 };
 
 }  // namespace

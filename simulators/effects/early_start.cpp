@@ -8,10 +8,10 @@ namespace {
 
 /// A cautiously set start programme: the colder the evening before, the earlier the start, and
 /// earlier still after a day on which the building has cooled down.
-class EarlyStart final : public HiddenEffect {
+class EarlyStart final : public EffectWithSettings {
  public:
-  EarlyStart(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), evening_C_(kEvening_s) {}
+  EarlyStart(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), evening_C_(kEvening_s) {}
 
   void plan(metering::Day day, Timetable& timetable) override {
     const double mood = settings_.rng.uniform(0.85, 1.15);
@@ -34,7 +34,6 @@ class EarlyStart final : public HiddenEffect {
  private:
   static constexpr double kEvening_s = 3.0 * 3600.0;
 
-  EffectSettings settings_;
   SlowValue evening_C_;
   bool ran_yesterday_ = true;
 };

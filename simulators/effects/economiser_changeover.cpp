@@ -1,25 +1,6 @@
 #include "simulators/effects/effect_kind.hpp"
 
 namespace recald::simulators {
-namespace {
-
-/// The limit above which no extra outdoor air is taken was entered wrongly, or the outdoor sensor
-/// reads wrongly. Too high: warm, humid air enters. Too low: free cooling ends early.
-class EconomiserChangeover final : public HiddenEffect {
- public:
-  EconomiserChangeover(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
-
-  void operate(const Moment& now, Operation& operation) override {
-    if (!settings_.covers(now.local.date)) return;
-    operation.air.economiser_shift_K += settings_.strength;
-  }
-
- private:
-  EffectSettings settings_;
-};
-
-}  // namespace
 
 EffectKind economiser_changeover() {
   return {
@@ -32,7 +13,11 @@ EffectKind economiser_changeover() {
       .strength = {-10.0, -6.0, 10.0, "K that the change-over is too high, negative for too low"},
       .needs = {.cooling_meter = true, .economiser = true},
       .turns = "economiser",
-      .make = make_effect<EconomiserChangeover>};
+      // The limit above which no extra outdoor air is taken was entered wrongly, or the outdoor
+      // sensor reads wrongly. Too high: warm, humid air enters. Too low: free cooling ends early.
+      .operate = [](const EffectSettings& settings, const Moment&, Operation& operation) {
+        operation.air.economiser_shift_K += settings.strength;
+      }};
 }
 
 }  // namespace recald::simulators

@@ -3,24 +3,6 @@
 #include "simulators/effects/effect_kind.hpp"
 
 namespace recald::simulators {
-namespace {
-
-/// Free cooling is switched off, or some of the air handlers' dampers do not move.
-class EconomiserFailed final : public HiddenEffect {
- public:
-  EconomiserFailed(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
-
-  void operate(const Moment& now, Operation& operation) override {
-    if (!settings_.covers(now.local.date)) return;
-    operation.air.economiser_share *= std::max(0.0, 1.0 - settings_.strength);
-  }
-
- private:
-  EffectSettings settings_;
-};
-
-}  // namespace
 
 EffectKind economiser_failed() {
   return {.id = "economiser_failed",
@@ -32,7 +14,10 @@ EffectKind economiser_failed() {
           .strength = {0.0, 1.0, 1.0, "share of the free cooling that is lost"},
           .needs = {.cooling_meter = true, .economiser = true},
           .turns = "economiser",
-          .make = make_effect<EconomiserFailed>};
+          // Free cooling is switched off, or some of the air handlers' dampers do not move.
+          .operate = [](const EffectSettings& settings, const Moment&, Operation& operation) {
+            operation.air.economiser_share *= std::max(0.0, 1.0 - settings.strength);
+          }};
 }
 
 }  // namespace recald::simulators

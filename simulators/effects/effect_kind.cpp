@@ -32,6 +32,19 @@ std::string_view to_string(EffectClass group) {
 
 namespace {
 
+class Stateless final : public EffectWithSettings {
+ public:
+  Stateless(const EffectKind& kind, const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), operate_(kind.operate) {}
+
+  void operate(const Moment& now, Operation& operation) override {
+    if (settings_.covers(now.local.date)) operate_(settings_, now, operation);
+  }
+
+ private:
+  void (*operate_)(const EffectSettings&, const Moment&, Operation&);
+};
+
 std::string needs_in_words(const EffectKind& kind) {
   const EffectNeeds& needs = kind.needs;
   std::string words;
@@ -52,6 +65,12 @@ std::string needs_in_words(const EffectKind& kind) {
 }
 
 }  // namespace
+
+std::unique_ptr<HiddenEffect> make(const EffectKind& kind, const EffectSettings& settings,
+                                   const Drawings& drawings) {
+  if (kind.make != nullptr) return kind.make(settings, drawings);
+  return std::make_unique<Stateless>(kind, settings, drawings);
+}
 
 std::string explain(const EffectKind& kind) {
   std::string text =

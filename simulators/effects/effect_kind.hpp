@@ -75,7 +75,20 @@ struct EffectKind {
   bool dated = false;           ///< Starts (or is confined) at a date: scenarios give `from`.
   bool of_one_meter = false;    ///< Scenarios give `meter`.
   bool all_or_nothing = false;  ///< Present or absent: populations do not scale it.
-  std::unique_ptr<HiddenEffect> (*make)(const EffectSettings&, const Drawings&);
+  /// Of an effect without state: its change of a step, on the days that its settings cover.
+  void (*operate)(const EffectSettings&, const Moment&, Operation&) = nullptr;
+  /// Of every other.
+  std::unique_ptr<HiddenEffect> (*make)(const EffectSettings&, const Drawings&) = nullptr;
+};
+
+/// The base of effects that have a state or another hook than `operate`.
+class EffectWithSettings : public HiddenEffect {
+ public:
+  EffectWithSettings(const EffectSettings& settings, const Drawings& /*drawings*/)
+      : settings_(settings) {}
+
+ protected:
+  EffectSettings settings_;
 };
 
 /// Makes `EffectKind::make` for an effect constructed from its settings and the drawings.
@@ -84,6 +97,11 @@ std::unique_ptr<HiddenEffect> make_effect(const EffectSettings& settings,
                                           const Drawings& drawings) {
   return std::make_unique<Effect>(settings, drawings);
 }
+
+/// The effect of one scenario, whichever of the two its kind has.
+[[nodiscard]] std::unique_ptr<HiddenEffect> make(const EffectKind& kind,
+                                                 const EffectSettings& settings,
+                                                 const Drawings& drawings);
 
 /// The text of `--list-effects` for one kind: name, class, sentence, strengths, needs.
 [[nodiscard]] std::string explain(const EffectKind& kind);

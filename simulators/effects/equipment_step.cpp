@@ -11,10 +11,10 @@ constexpr double kLampsMin = 0.1;        ///< Of the lamps' power, even after a 
 
 /// From one date on there is more equipment (a laboratory or computers moved in) or less (better
 /// lamps). The change takes some days.
-class EquipmentStep final : public HiddenEffect {
+class EquipmentStep final : public EffectWithSettings {
  public:
   EquipmentStep(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         floor_m2_(drawings.floor_area_m2()),
         lamps_W_m2_(installed_lamps_W_m2(drawings)),
         roll_out_days_(settings_.rng.uniform(2.0, 15.0)) {}
@@ -47,7 +47,6 @@ class EquipmentStep final : public HiddenEffect {
     return storey_W / storey_m2;
   }
 
-  EffectSettings settings_;
   double floor_m2_;
   double lamps_W_m2_;
   double roll_out_days_;

@@ -14,10 +14,10 @@ constexpr double kWeekendUse = 0.06;
 constexpr double kMeanCharge_h = 2.2;
 
 /// Cars charge where people park: some from arrival until full, others after lunch.
-class EvCharging final : public HiddenEffect {
+class EvCharging final : public EffectWithSettings {
  public:
   EvCharging(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         point_W_(settings.strength * drawings.floor_area_m2() / static_cast<double>(kPoints)) {}
 
   void plan(metering::Day /*day*/, Timetable& timetable) override {
@@ -61,7 +61,6 @@ class EvCharging final : public HiddenEffect {
     return std::max(0.0, overlap_h) / step_h;
   }
 
-  EffectSettings settings_;
   double point_W_;
   std::array<Point, kPoints> points_{};
 };

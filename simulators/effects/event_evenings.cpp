@@ -10,10 +10,10 @@ namespace {
 
 /// Receptions, lectures, sports: on some thirty evenings a year, mostly late in the week and never
 /// in quiet seasons, many people come when the building is usually empty.
-class EventEvenings final : public HiddenEffect {
+class EventEvenings final : public EffectWithSettings {
  public:
   EventEvenings(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), drawings_(drawings) {}
+      : EffectWithSettings(settings, drawings), drawings_(drawings) {}
 
   void plan(metering::Day day, Timetable& timetable) override {
     Rng& rng = settings_.rng;
@@ -64,7 +64,6 @@ class EventEvenings final : public HiddenEffect {
            ramp(hour, event_->to_h, event_->to_h - 0.5);
   }
 
-  EffectSettings settings_;
   Drawings drawings_;
   std::optional<RunningHours> event_;  ///< Of this evening.
   double crowd_share_ = 1.0;           ///< Of this evening, relative to the strength.

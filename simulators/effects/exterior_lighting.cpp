@@ -9,10 +9,10 @@ namespace {
 
 /// More lamps outside than drawn. A photocell switches them on at dusk, a little earlier under
 /// clouds; some lamps are always broken.
-class ExteriorLighting final : public HiddenEffect {
+class ExteriorLighting final : public EffectWithSettings {
  public:
   ExteriorLighting(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         lamps_W_(settings.strength * drawings.floor_area_m2()),
         daylight_(/*off_below=*/8.0, /*on_above=*/20.0),
         repair_(30.0 * kDay_s, kDay_s, settings_.rng) {}
@@ -28,7 +28,6 @@ class ExteriorLighting final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double lamps_W_;
   Hysteresis daylight_;  ///< On horizontal radiation, W/m².
   Persistence repair_;

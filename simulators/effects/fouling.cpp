@@ -14,10 +14,10 @@ constexpr double kDirtMax = 1.6;       ///< Beyond this, water still flows.
 
 /// Scale and slime in the condenser, from one yearly cleaning to the next; some
 /// cleanings are forgotten.
-class Fouling final : public HiddenEffect {
+class Fouling final : public EffectWithSettings {
  public:
   Fouling(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), latitude_deg_(drawings.place.latitude_deg) {
+      : EffectWithSettings(settings, drawings), latitude_deg_(drawings.place.latitude_deg) {
     dirt_ = settings_.rng.uniform(0.2, 0.8);
   }
 
@@ -45,7 +45,6 @@ class Fouling final : public HiddenEffect {
     if (!missed) cleaning_ = date + std::chrono::days{late_days};
   }
 
-  EffectSettings settings_;
   double latitude_deg_;
   double dirt_;  ///< 0: just cleaned; 1: a year later.
   std::chrono::year year_ = std::chrono::year::min();

@@ -14,10 +14,10 @@ constexpr double kCoupledShare = 0.7;     ///< Of the soil's swing, under a bare
 
 /// A slab or basement without insulation. The ground below it follows the outdoors,
 /// delayed and damped.
-class GroundCoupling final : public HiddenEffect {
+class GroundCoupling final : public EffectWithSettings {
  public:
   GroundCoupling(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         mean_C_(drawings.ground_C),
         upper_(kSoilLayer_s),
         lower_(kSoilLayer_s) {}
@@ -48,7 +48,6 @@ class GroundCoupling final : public HiddenEffect {
     begun_ = true;
   }
 
-  EffectSettings settings_;
   double mean_C_;
   SlowValue upper_;
   SlowValue lower_;

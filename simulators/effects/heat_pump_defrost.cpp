@@ -20,10 +20,9 @@ constexpr double kDefrost_s = 0.8 * kCycle_s;
 
 /// The outdoor coil of the heat pump ices up in damp air near freezing, and is defrosted
 /// with its own heat.
-class HeatPumpDefrost final : public HiddenEffect {
+class HeatPumpDefrost final : public EffectWithSettings {
  public:
-  HeatPumpDefrost(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void operate(const Moment& now, Operation& operation) override {
     double penalty = 0.0;
@@ -53,7 +52,6 @@ class HeatPumpDefrost final : public HiddenEffect {
     return frozen_share * std::max(0.0, settling_kg_kg) / kWorstFrosting_kg_kg;
   }
 
-  EffectSettings settings_;
   double ice_ = 0.0;  ///< 1: iced up.
   bool runs_ = false;
 };

@@ -9,10 +9,10 @@ namespace {
 
 /// Steam keeps the rooms from getting dry in the heating season. It is switched on and off with the
 /// season, and is off on days when its cylinders are descaled.
-class Humidifier final : public HiddenEffect {
+class Humidifier final : public EffectWithSettings {
  public:
-  Humidifier(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), warmth_C_(kSeasonMemory_s) {}
+  Humidifier(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), warmth_C_(kSeasonMemory_s) {}
 
   void plan(metering::Day /*day*/, Timetable& /*timetable*/) override {
     in_service_ = settings_.rng.uniform() > 1.0 / kDaysBetweenServices;
@@ -32,7 +32,6 @@ class Humidifier final : public HiddenEffect {
   static constexpr double kSeasonMemory_s = 3.0 * 86'400.0;
   static constexpr double kDaysBetweenServices = 35.0;
 
-  EffectSettings settings_;
   SlowValue warmth_C_;               ///< Of the last days.
   Hysteresis season_{-15.0, -11.0};  ///< Minus that: on below 11 degC, off above 15 degC.
   bool in_service_ = true;

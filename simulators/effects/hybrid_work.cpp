@@ -7,9 +7,9 @@ namespace recald::simulators {
 namespace {
 
 /// People choose their days at home, and choose similar ones.
-class HybridWork final : public HiddenEffect {
+class HybridWork final : public EffectWithSettings {
  public:
-  HybridWork(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void plan(metering::Day day, Timetable& timetable) override {
     constexpr std::array at_home{0.65, 0.15, 0.05, 0.2, 0.85, 0.0, 0.0};  // Monday to Sunday
@@ -19,9 +19,6 @@ class HybridWork final : public HiddenEffect {
     timetable.attendance *=
         1.0 - settings_.strength * std::clamp(at_home[weekday] * mood, 0.0, 1.0);
   }
-
- private:
-  EffectSettings settings_;
 };
 
 }  // namespace

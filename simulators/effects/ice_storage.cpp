@@ -7,10 +7,10 @@ namespace {
 
 /// A tank of ice that the chilled water charges at night and that serves the coils
 /// in the afternoon.
-class IceStorage final : public HiddenEffect {
+class IceStorage final : public EffectWithSettings {
  public:
   IceStorage(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         capacity_J_(settings.strength * 3600e3 * drawings.chilled_water_design_kW),
         least_plant_W_(kLeastPlant * 1000.0 * drawings.chilled_water_design_kW) {}
 
@@ -56,7 +56,6 @@ class IceStorage final : public HiddenEffect {
     return std::min(stored_J_ / left_s, kCarriedShare * last_load_W_);
   }
 
-  EffectSettings settings_;
   double capacity_J_;
   double least_plant_W_;
   double stored_J_ = 0.0;

@@ -17,10 +17,10 @@ constexpr double kGrowing_C = 12.0;      ///< Mean air temperature below which n
 constexpr std::size_t kValveSlots = 14;  ///< Half hours per night.
 
 /// Pumps water the grounds at night after warm weeks without rain.
-class IrrigationPumps final : public HiddenEffect {
+class IrrigationPumps final : public EffectWithSettings {
  public:
   IrrigationPumps(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         pumps_W_(settings.strength * drawings.floor_area_m2()),
         air_C_(3.0 * 86'400.0) {}
 
@@ -57,7 +57,6 @@ class IrrigationPumps final : public HiddenEffect {
                              kDriest_mm);
   }
 
-  EffectSettings settings_;
   double pumps_W_;
   SlowValue air_C_;
   double missing_mm_ = 0.0;

@@ -7,10 +7,10 @@ namespace {
 
 /// Days that are working days only on paper: bridge days, the week after Christmas, closing days
 /// that the house decides on, days when snow keeps people at home.
-class MissingHolidays final : public HiddenEffect {
+class MissingHolidays final : public EffectWithSettings {
  public:
   MissingHolidays(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), calendar_(drawings.calendar) {}
+      : EffectWithSettings(settings, drawings), calendar_(drawings.calendar) {}
 
   void plan(metering::Day day, Timetable& timetable) override {
     Rng& rng = settings_.rng;
@@ -55,7 +55,6 @@ class MissingHolidays final : public HiddenEffect {
     return is_free(here - std::chrono::days{1}) && is_free(here + std::chrono::days{1});
   }
 
-  EffectSettings settings_;
   Calendar calendar_;
   double fresh_mm_ = 0.0;  ///< Snow and freezing rain of the last hours, as water.
 };

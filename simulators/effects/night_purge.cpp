@@ -9,10 +9,10 @@ namespace {
 
 /// In warm spells the fans flush the building with cool night air, so that the slabs are
 /// cold in the morning.
-class NightPurge final : public HiddenEffect {
+class NightPurge final : public EffectWithSettings {
  public:
-  NightPurge(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), warmth_C_(kDay_s) {}
+  NightPurge(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), warmth_C_(kDay_s) {}
 
   void operate(const Moment& now, Operation& operation) override {
     const Outdoors& outdoors = now.outdoors;
@@ -33,7 +33,6 @@ class NightPurge final : public HiddenEffect {
   static constexpr double kTo_h = 6.0;
   static constexpr double kDampest_C = 16.0;
 
-  EffectSettings settings_;
   SlowValue warmth_C_;                 ///< Of the last day.
   Hysteresis warm_spell_{16.0, 18.0};  ///< Of the last day, degC.
   Hysteresis cool_{-22.0, -20.5};      ///< Minus outdoors: on below 20.5 degC, off above 22 degC.

@@ -1,26 +1,6 @@
 #include "simulators/effects/effect_kind.hpp"
 
 namespace recald::simulators {
-namespace {
-
-/// The clock that should let rooms float at night has no effect on the thermostats.
-class NightSetbackMissing final : public HiddenEffect {
- public:
-  NightSetbackMissing(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
-
-  void operate(const Moment& now, Operation& operation) override {
-    if (!settings_.covers(now.local.date)) return;
-    RoomOperation& rooms = operation.rooms;
-    rooms.night_heating_C += settings_.strength * (rooms.heating_C - rooms.night_heating_C);
-    rooms.night_cooling_C += settings_.strength * (rooms.cooling_C - rooms.night_cooling_C);
-  }
-
- private:
-  EffectSettings settings_;
-};
-
-}  // namespace
 
 EffectKind night_setback_missing() {
   return {
@@ -33,7 +13,12 @@ EffectKind night_setback_missing() {
       .strength = {0.0, 1.0, 1.0, "share of the set-back that is missing"},
       .needs = {.heat_meter = true, .timetable = true},
       .turns = "night set-points",
-      .make = make_effect<NightSetbackMissing>};
+      // The clock that should let rooms float at night has no effect on the thermostats.
+      .operate = [](const EffectSettings& settings, const Moment&, Operation& operation) {
+        RoomOperation& rooms = operation.rooms;
+        rooms.night_heating_C += settings.strength * (rooms.heating_C - rooms.night_heating_C);
+        rooms.night_cooling_C += settings.strength * (rooms.cooling_C - rooms.night_cooling_C);
+      }};
 }
 
 }  // namespace recald::simulators

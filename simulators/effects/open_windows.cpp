@@ -14,10 +14,12 @@ double window_m2(const Drawings& drawings) {
 /// People open windows when it is pleasant outside, close them in wind, cold and heat, and forget
 /// some when they go home. The weather matters more than the rooms.
 /// @see Haldi, Robinson (2009), Building and Environment 44(12), 2378-2395.
-class OpenWindows final : public HiddenEffect {
+class OpenWindows final : public EffectWithSettings {
  public:
   OpenWindows(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), window_m2_(window_m2(drawings)), open_share_(kHabit_s) {}
+      : EffectWithSettings(settings, drawings),
+        window_m2_(window_m2(drawings)),
+        open_share_(kHabit_s) {}
 
   void plan(metering::Day /*day*/, Timetable& /*timetable*/) override {
     mood_ = settings_.rng.uniform(0.6, 1.2);
@@ -42,7 +44,6 @@ class OpenWindows final : public HiddenEffect {
  private:
   static constexpr double kHabit_s = 2400.0;
 
-  EffectSettings settings_;
   double window_m2_;
   SlowValue open_share_;  ///< Relative to a pleasant day, without variation between days.
   double mood_ = 1.0;

@@ -1,24 +1,6 @@
 #include "simulators/effects/effect_kind.hpp"
 
 namespace recald::simulators {
-namespace {
-
-/// Someone changed the minimum damper position: for fresher air, or to save energy.
-class OutdoorAirAmount final : public HiddenEffect {
- public:
-  OutdoorAirAmount(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
-
-  void operate(const Moment& now, Operation& operation) override {
-    if (!settings_.covers(now.local.date)) return;
-    operation.air.outdoor_factor *= 1.0 + settings_.strength;
-  }
-
- private:
-  EffectSettings settings_;
-};
-
-}  // namespace
 
 EffectKind outdoor_air_amount() {
   return {
@@ -31,7 +13,10 @@ EffectKind outdoor_air_amount() {
       .strength = {-0.6, 0.5, 1.5, "share added to the designed outdoor air"},
       .turns = "outdoor-air amount",
       .dated = true,
-      .make = make_effect<OutdoorAirAmount>};
+      // Someone changed the minimum damper position: for fresher air, or to save energy.
+      .operate = [](const EffectSettings& settings, const Moment&, Operation& operation) {
+        operation.air.outdoor_factor *= 1.0 + settings.strength;
+      }};
 }
 
 }  // namespace recald::simulators

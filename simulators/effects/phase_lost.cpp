@@ -9,9 +9,10 @@ namespace {
 
 /// One of three current transformers reads zero. Its phase carries about a third, slightly more by
 /// day than by night or the reverse, depending on the wiring.
-class PhaseLost final : public HiddenEffect {
+class PhaseLost final : public EffectWithSettings {
  public:
-  PhaseLost(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {
+  PhaseLost(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings) {
     tilt_ = settings_.rng.uniform(-0.12, 0.12);
   }
 
@@ -29,7 +30,6 @@ class PhaseLost final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double tilt_ = 0.0;  ///< How strongly the phase's share depends on the load.
 };
 

@@ -11,9 +11,9 @@ constexpr double kBatchShare = 0.3;  ///< Of purchases: made all at once instead
 constexpr double kBatchEvery_days = 15.0;
 
 /// Screens, computers, instruments: each year somewhat more than the year before, or less.
-class PlugGrowth final : public HiddenEffect {
+class PlugGrowth final : public EffectWithSettings {
  public:
-  PlugGrowth(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void plan(metering::Day day, Timetable& /*timetable*/) override {
     const bool batch = settings_.rng.uniform() < 1.0 / kBatchEvery_days;
@@ -29,7 +29,6 @@ class PlugGrowth final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double grown_years_ = 0.0;
 };
 

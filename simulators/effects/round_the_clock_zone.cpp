@@ -7,10 +7,10 @@ namespace {
 
 /// Part of the floor (a call centre, a control room, a laboratory) works in three shifts. By day it
 /// is like the rest; hidden is that it continues when the others have left.
-class RoundTheClockZone final : public HiddenEffect {
+class RoundTheClockZone final : public EffectWithSettings {
  public:
   RoundTheClockZone(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), drawings_(drawings) {}
+      : EffectWithSettings(settings, drawings), drawings_(drawings) {}
 
   void plan(metering::Day /*day*/, Timetable& timetable) override {
     const double roster = settings_.rng.uniform(0.9, 1.1);
@@ -38,7 +38,6 @@ class RoundTheClockZone final : public HiddenEffect {
   static constexpr double kUsualPresence = 0.6;  ///< Present / assigned in the middle of a day.
   static constexpr double kLit = 0.85;           ///< Of the lights in rooms with a crew.
 
-  EffectSettings settings_;
   Drawings drawings_;
   double crew_share_ = 0.0;  ///< Occupied desks in the additional shifts.
 };

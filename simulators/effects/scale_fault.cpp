@@ -6,9 +6,9 @@ namespace {
 
 /// A wrong pulse weight or transformer ratio, since someone replaced the meter or
 /// changed its settings.
-class ScaleFault final : public HiddenEffect {
+class ScaleFault final : public EffectWithSettings {
  public:
-  ScaleFault(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void distort(const MeterRecord& record) const override {
     if (settings_.meter != record.utility) return;
@@ -17,9 +17,6 @@ class ScaleFault final : public HiddenEffect {
       record.shown_kW[slot] *= 1.0 + settings_.strength;
     }
   }
-
- private:
-  EffectSettings settings_;
 };
 
 }  // namespace

@@ -12,10 +12,10 @@ constexpr double kCirculationShare = 0.3;
 
 /// More hot water than drawn (showers, a canteen, dishwashers). Mains water is cold in late winter
 /// and mild in late summer, and a circulation pipe stays warm day and night.
-class SeasonalHotWater final : public HiddenEffect {
+class SeasonalHotWater final : public EffectWithSettings {
  public:
   SeasonalHotWater(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), latitude_deg_(drawings.place.latitude_deg) {
+      : EffectWithSettings(settings, drawings), latitude_deg_(drawings.place.latitude_deg) {
     const double flow_kg_s = drawings.hot_water_m3_day * 1000.0 / 86'400.0;
     circulation_W_ = settings.strength * kCirculationShare * flow_kg_s * kWaterHeat_J_kgK *
                      (drawings.hot_water_C - drawings.mains_C);
@@ -32,7 +32,6 @@ class SeasonalHotWater final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double latitude_deg_;
   double circulation_W_;
   double swing_K_;

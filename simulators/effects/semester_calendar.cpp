@@ -14,10 +14,9 @@ double days_from(metering::Day from, metering::Day to) {
 
 /// People of a teaching institution leave between terms. The dates vary a little from year to year,
 /// and people leave and return over several days.
-class SemesterCalendar final : public HiddenEffect {
+class SemesterCalendar final : public EffectWithSettings {
  public:
-  SemesterCalendar(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void plan(metering::Day day, Timetable& timetable) override {
     if (year_ != day.year()) begin_year(day.year());
@@ -51,7 +50,6 @@ class SemesterCalendar final : public HiddenEffect {
         {0.95 * std::max(january, december), 0.7 * spring, 0.85 * summer, 0.5 * autumn});
   }
 
-  EffectSettings settings_;
   std::optional<std::chrono::year> year_;
   double january_shift_d_ = 0.0;
   double spring_shift_d_ = 0.0;

@@ -7,10 +7,10 @@ namespace recald::simulators {
 namespace {
 
 /// Servers that are not in the drawings. Their load hardly depends on day, night or holidays.
-class ServerRoom final : public HiddenEffect {
+class ServerRoom final : public EffectWithSettings {
  public:
   ServerRoom(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         servers_W_(settings.strength * drawings.floor_area_m2()),
         work_(10.0 * kDay_s, kDay_s, settings_.rng) {}
 
@@ -24,7 +24,6 @@ class ServerRoom final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double servers_W_;
   Persistence work_;
   double today_ = 1.0;

@@ -1,24 +1,6 @@
 #include "simulators/effects/effect_kind.hpp"
 
 namespace recald::simulators {
-namespace {
-
-/// From one date on, rooms are kept warmer in summer: to save energy, or on request.
-class SetpointRaised final : public HiddenEffect {
- public:
-  SetpointRaised(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
-
-  void operate(const Moment& now, Operation& operation) override {
-    if (!settings_.covers(now.local.date)) return;
-    operation.rooms.cooling_C += settings_.strength;
-  }
-
- private:
-  EffectSettings settings_;
-};
-
-}  // namespace
 
 EffectKind setpoint_raised() {
   return {
@@ -31,7 +13,10 @@ EffectKind setpoint_raised() {
       .strength = {-2.0, 1.5, 3.0, "K added to the occupied cooling set-point"},
       .turns = "cooling set-point",
       .dated = true,
-      .make = make_effect<SetpointRaised>};
+      // From one date on, rooms are kept warmer in summer: to save energy, or on request.
+      .operate = [](const EffectSettings& settings, const Moment&, Operation& operation) {
+        operation.rooms.cooling_C += settings.strength;
+      }};
 }
 
 }  // namespace recald::simulators

@@ -7,10 +7,10 @@ namespace {
 
 /// Reheat valves that do not shut: dirt keeps some open, while flushing or a new actuator closes
 /// others, so the leak varies around its mean over the months.
-class SimultaneousHeatingCooling final : public HiddenEffect {
+class SimultaneousHeatingCooling final : public EffectWithSettings {
  public:
-  SimultaneousHeatingCooling(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), dirt_(kMonth_s, kDay_s, settings_.rng) {}
+  SimultaneousHeatingCooling(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), dirt_(kMonth_s, kDay_s, settings_.rng) {}
 
   void plan(metering::Day /*day*/, Timetable& /*timetable*/) override {
     dirt_.advance(settings_.rng);
@@ -26,7 +26,6 @@ class SimultaneousHeatingCooling final : public HiddenEffect {
  private:
   static constexpr double kMonth_s = 30.0 * kDay_s;
 
-  EffectSettings settings_;
   Persistence dirt_;
 };
 

@@ -12,10 +12,10 @@ constexpr double kRampShare = 0.75;           ///< Of the power; gutters and dra
 
 /// A garage ramp, gutters and drains that are kept free of ice: full heating in snow, low heating
 /// in dry frost. Hot water or steam heats the ramp if the plant has it; gutters are electric.
-class SnowMelting final : public HiddenEffect {
+class SnowMelting final : public EffectWithSettings {
  public:
   SnowMelting(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         full_W_(settings.strength * drawings.floor_area_m2()),
         heat_share_(drawings.heating == HeatingPlant::heat_pump ? 0.0 : kRampShare),
         frost_(/*off_below=*/-1.0, /*on_above=*/1.0) {}
@@ -42,7 +42,6 @@ class SnowMelting final : public HiddenEffect {
     return to_run_s_ > 0.0 ? 1.0 : freezing ? kKeepWarm : 0.0;
   }
 
-  EffectSettings settings_;
   double full_W_;
   double heat_share_;
   Hysteresis frost_;

@@ -13,10 +13,10 @@ constexpr double kUseful = 0.25;  ///< Of daylight on the skylight: the part tha
 constexpr double kReplaceableShare = 0.4;  ///< Of the core's lamps: dimmed under a bright skylight.
 
 /// Snow covers the skylight: the core is dark and cool, and its lamps come back on.
-class SnowOnSkylight final : public HiddenEffect {
+class SnowOnSkylight final : public EffectWithSettings {
  public:
   SnowOnSkylight(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         skylight_m2_(drawings.skylight_m2()),
         dimmable_W_(kReplaceableShare * drawings.zone_m2(core) *
                     drawings.core_rooms.lighting_W_m2) {}
@@ -34,7 +34,6 @@ class SnowOnSkylight final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double skylight_m2_;
   double dimmable_W_;
 };

@@ -14,10 +14,10 @@ constexpr double kLowestSunDay = 20.0;
 
 /// Trees that have grown or were felled, films on panes, blinds that stay up or down. Each facade
 /// has its own share, trees follow the season, and blinds the people's habits.
-class SolarGainChange final : public HiddenEffect {
+class SolarGainChange final : public EffectWithSettings {
  public:
   SolarGainChange(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         latitude_deg_(drawings.place.latitude_deg),
         mood_(8.0 * kDay_s, kDay_s, settings_.rng) {
     for (double& share : facade_share_) share = settings_.rng.uniform(0.55, 1.0);
@@ -41,7 +41,6 @@ class SolarGainChange final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double latitude_deg_;
   Persistence mood_;
   std::array<double, 4> facade_share_{};

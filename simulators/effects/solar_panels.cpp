@@ -15,10 +15,11 @@ constexpr double kInverterShare = 0.85;  ///< Of the rated power: the limit of t
 constexpr double kSnowCovers_mm = 3.0;
 
 /// Photovoltaic panels behind the building's meter. Surplus power is exported and not counted.
-class SolarPanels final : public HiddenEffect {
+class SolarPanels final : public EffectWithSettings {
  public:
   SolarPanels(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), rated_kW_(settings.strength * drawings.floor_area_m2() / 1000.0) {
+      : EffectWithSettings(settings, drawings),
+        rated_kW_(settings.strength * drawings.floor_area_m2() / 1000.0) {
     const double towards_equator_deg = drawings.place.latitude_deg < 0.0 ? 0.0 : 180.0;
     panel_.azimuth_deg = towards_equator_deg + settings_.rng.uniform(-40.0, 40.0);
     panel_.tilt_deg = settings_.rng.uniform(8.0, 30.0);
@@ -41,7 +42,6 @@ class SolarPanels final : public HiddenEffect {
                       0.0, kInverterShare);
   }
 
-  EffectSettings settings_;
   double rated_kW_;
   Orientation panel_{};
 };

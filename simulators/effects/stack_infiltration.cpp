@@ -8,10 +8,11 @@ constexpr double kDoorsClosedShare = 0.75;
 constexpr double kWedgedDays = 0.6;  ///< Share of working days on which the doors are wedged open.
 
 /// A stairwell whose smoke vent at the top does not close: a chimney in cold weather.
-class StackInfiltration final : public HiddenEffect {
+class StackInfiltration final : public EffectWithSettings {
  public:
   StackInfiltration(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), shaft_m2_(settings.strength * drawings.floor_area_m2() / 1000.0) {}
+      : EffectWithSettings(settings, drawings),
+        shaft_m2_(settings.strength * drawings.floor_area_m2() / 1000.0) {}
 
   void plan(metering::Day /*day*/, Timetable& timetable) override {
     const bool wedged = settings_.rng.uniform() < kWedgedDays;
@@ -28,7 +29,6 @@ class StackInfiltration final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double shaft_m2_;
   RunningHours doors_open_{24.0, 0.0};
 };

@@ -8,10 +8,10 @@ namespace {
 
 /// Leaking steam traps and uninsulated pipes: heat is lost in any weather, in amounts that vary
 /// with the pipe pressure.
-class SteamTrapLeak final : public HiddenEffect {
+class SteamTrapLeak final : public EffectWithSettings {
  public:
   SteamTrapLeak(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings),
+      : EffectWithSettings(settings, drawings),
         leak_W_(settings.strength * 1000.0 * drawings.heating_design_kW),
         pressure_(20.0 * kDay_s, kDay_s, settings_.rng) {}
 
@@ -25,7 +25,6 @@ class SteamTrapLeak final : public HiddenEffect {
   }
 
  private:
-  EffectSettings settings_;
   double leak_W_;
   Persistence pressure_;
   double today_ = 1.0;

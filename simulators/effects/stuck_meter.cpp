@@ -13,9 +13,9 @@ constexpr double kShareMax = 0.4;
 constexpr double kSpellEvery_slots = 45.0 * 96.0;
 
 /// The meter hangs: it repeats its last value for days or weeks, until someone notices.
-class StuckMeter final : public HiddenEffect {
+class StuckMeter final : public EffectWithSettings {
  public:
-  StuckMeter(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void distort(const MeterRecord& record) const override {
     if (settings_.meter != record.utility) return;
@@ -51,8 +51,6 @@ class StuckMeter final : public HiddenEffect {
       shown_kW[slot] = shown_kW[slot - 1];
     }
   }
-
-  EffectSettings settings_;
 };
 
 }  // namespace

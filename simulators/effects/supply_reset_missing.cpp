@@ -8,10 +8,10 @@ namespace {
 
 /// Supply air should be warmer in winter. Instead someone fixed its set-point for one warm room:
 /// first the reset is lost, and then the fixed value is even colder.
-class SupplyResetMissing final : public HiddenEffect {
+class SupplyResetMissing final : public EffectWithSettings {
  public:
-  SupplyResetMissing(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings), sensor_C_(kSensorLag_s) {}
+  SupplyResetMissing(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings), sensor_C_(kSensorLag_s) {}
 
   void operate(const Moment& now, Operation& operation) override {
     const double outdoor_C = sensor_C_.follow(now.outdoors.air.temperature_C, now.step_s);
@@ -25,7 +25,6 @@ class SupplyResetMissing final : public HiddenEffect {
   static constexpr double kSensorLag_s = 1800.0;
   static constexpr double kFullyLost_K = 3.0;
 
-  EffectSettings settings_;
   SlowValue sensor_C_;
 };
 

@@ -26,10 +26,11 @@ constexpr RunningHours kRefill{6.0, 18.0};
 
 /// A pool: closed on Mondays for filter washing and new water, open on other days, covered at
 /// night. Its hall is dried with outdoor air while that is dry, otherwise with a dehumidifier.
-class SwimmingPool final : public HiddenEffect {
+class SwimmingPool final : public EffectWithSettings {
  public:
   SwimmingPool(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), pool_m2_(settings.strength * drawings.floor_area_m2() / 1000.0) {}
+      : EffectWithSettings(settings, drawings),
+        pool_m2_(settings.strength * drawings.floor_area_m2() / 1000.0) {}
 
   void plan(metering::Day day, Timetable& /*timetable*/) override {
     const std::chrono::weekday weekday{std::chrono::sys_days{day}};
@@ -88,7 +89,6 @@ class SwimmingPool final : public HiddenEffect {
             kPumps_W_m2 + (open ? kFansAndLamps_W_m2 : 0.0) + dryer_W_m2 / kDryerLift_J_J};
   }
 
-  EffectSettings settings_;
   double pool_m2_;
   bool monday_ = false;
   RunningHours open_{24.0, 0.0};

@@ -7,10 +7,9 @@ namespace {
 
 /// Electricity is expensive on summer afternoons and winter mornings of working days. Set-points
 /// are relaxed then, and rooms are cooled or heated in advance.
-class TariffLoadShift final : public HiddenEffect {
+class TariffLoadShift final : public EffectWithSettings {
  public:
-  TariffLoadShift(const EffectSettings& settings, const Drawings& /*drawings*/)
-      : settings_(settings) {}
+  using EffectWithSettings::EffectWithSettings;
 
   void operate(const Moment& now, Operation& operation) override {
     if (!settings_.covers(now.local.date) || now.day_kind != DayKind::workday) return;
@@ -37,8 +36,6 @@ class TariffLoadShift final : public HiddenEffect {
   [[nodiscard]] static bool summer(metering::Day day) {
     return day.month() >= std::chrono::June && day.month() <= std::chrono::September;
   }
-
-  EffectSettings settings_;
 };
 
 }  // namespace

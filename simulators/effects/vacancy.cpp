@@ -8,9 +8,10 @@ namespace recald::simulators {
 namespace {
 
 /// Everyone is sent home within a week, and returns team by team, Monday by Monday.
-class Vacancy final : public HiddenEffect {
+class Vacancy final : public EffectWithSettings {
  public:
-  Vacancy(const EffectSettings& settings, const Drawings& /*drawings*/) : settings_(settings) {
+  Vacancy(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings) {
     length_d_ = 7.0 * settings_.rng.uniform(18.0, 40.0);
     empty_share_ = settings_.rng.uniform(0.4, 0.65);
   }
@@ -48,7 +49,6 @@ class Vacancy final : public HiddenEffect {
     return std::min(leaving, 1.0 - returned);
   }
 
-  EffectSettings settings_;
   double length_d_;     ///< From the first day to the last return, unless set in the scenario.
   double empty_share_;  ///< Of the length, before the first team returns.
   std::optional<std::chrono::sys_days> begin_;

@@ -7,10 +7,11 @@ namespace {
 
 /// A weekly programme that someone copied to Saturday, and then to Sunday too. Holidays in the week
 /// are a separate list of exceptions, so they do not change.
-class WeekendOperation final : public HiddenEffect {
+class WeekendOperation final : public EffectWithSettings {
  public:
   WeekendOperation(const EffectSettings& settings, const Drawings& drawings)
-      : settings_(settings), workday_air_{drawings.occupied_from_h, drawings.occupied_to_h} {}
+      : EffectWithSettings(settings, drawings),
+        workday_air_{drawings.occupied_from_h, drawings.occupied_to_h} {}
 
   void plan(metering::Day day, Timetable& timetable) override {
     const bool runs = timetable.air.from_h < timetable.air.to_h;
@@ -36,7 +37,6 @@ class WeekendOperation final : public HiddenEffect {
     return 0.0;
   }
 
-  EffectSettings settings_;
   RunningHours workday_air_;  ///< Of the last working day.
 };
 

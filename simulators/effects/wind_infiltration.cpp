@@ -10,9 +10,10 @@ constexpr std::size_t kDeliveries = 6;  ///< Per working day.
 
 /// A loading door with worn seals, and a facade that is not much tighter. The door is open
 /// during deliveries.
-class WindInfiltration final : public HiddenEffect {
+class WindInfiltration final : public EffectWithSettings {
  public:
-  WindInfiltration(const EffectSettings& settings, const Drawings& drawings) : settings_(settings) {
+  WindInfiltration(const EffectSettings& settings, const Drawings& drawings)
+      : EffectWithSettings(settings, drawings) {
     const double facades_m2 = 2.0 * (drawings.length_m + drawings.width_m) *
                               static_cast<double>(drawings.storeys) * drawings.storey_height_m;
     gap_m2_ = settings.strength * facades_m2 / 1000.0;
@@ -46,7 +47,6 @@ class WindInfiltration final : public HiddenEffect {
     return false;
   }
 
-  EffectSettings settings_;
   double gap_m2_ = 0.0;
   std::array<double, 4> side_share_{};  ///< Of the gap, by facade.
   std::size_t door_side_ = 0;

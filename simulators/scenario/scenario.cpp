@@ -131,14 +131,14 @@ HiddenEffects make_effects(const Scenario& scenario, std::uint64_t seed,
                            const metering::LocalCalendar& calendar) {
   HiddenEffects effects;
   for (const HiddenChoice& choice : scenario.effects) {
-    effects.push_back(
-        choice.kind->make({.strength = choice.strength,
-                           .from = choice.from,
-                           .to = choice.to,
-                           .meter = choice.meter,
-                           .calendar = &calendar,
-                           .rng = stream_of(seed, Stream::effects, number_of(*choice.kind))},
-                          scenario.drawings));
+    effects.push_back(make(*choice.kind,
+                           {.strength = choice.strength,
+                            .from = choice.from,
+                            .to = choice.to,
+                            .meter = choice.meter,
+                            .calendar = &calendar,
+                            .rng = stream_of(seed, Stream::effects, number_of(*choice.kind))},
+                           scenario.drawings));
   }
   return effects;
 }

@@ -41,9 +41,8 @@ Result<Simulated> simulate(const Scenario& scenario, std::uint64_t seed,
                            const metering::LocalCalendar& calendar) {
   Building building(draw_truth(scenario.drawings, seed), scenario.step, seed,
                     make_effects(scenario, seed, calendar));
-  auto recording = record(building, scenario.period, seed);
-  if (!recording) return tl::unexpected(recording.error());
-  return Simulated{std::move(building), std::move(*recording)};
+  auto recording = TRY(record(building, scenario.period, seed));
+  return Simulated{std::move(building), std::move(recording)};
 }
 
 Scenario twin_of(Scenario scenario) {

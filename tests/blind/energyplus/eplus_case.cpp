@@ -140,13 +140,14 @@ class Hider {
   [[nodiscard]] HiddenEffects in_meters(const Candidate& candidate, double strength) const {
     HiddenEffects effects;
     if (candidate.change != nullptr) return effects;
-    effects.push_back(candidate.kind->make({.strength = strength,
-                                            .from = candidate.from,
-                                            .to = candidate.to,
-                                            .meter = candidate.meter,
-                                            .calendar = &building_.calendar(),
-                                            .rng = stream_of(plan_.building.seed, Stream::effects)},
-                                           plan_.building.building.drawings));
+    effects.push_back(make(*candidate.kind,
+                           {.strength = strength,
+                            .from = candidate.from,
+                            .to = candidate.to,
+                            .meter = candidate.meter,
+                            .calendar = &building_.calendar(),
+                            .rng = stream_of(plan_.building.seed, Stream::effects)},
+                           plan_.building.building.drawings));
     return effects;
   }
 

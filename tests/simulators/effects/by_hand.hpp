@@ -55,7 +55,7 @@ inline Outdoors mild_day() {
 class Bench {
  public:
   Bench(const EffectKind& kind, const EffectSettings& settings, const Drawings& drawings = {})
-      : calendar_(drawings.use), effect_(kind.make(settings, drawings)) {}
+      : calendar_(drawings.use), effect_(make(kind, settings, drawings)) {}
 
   /// The day's timetable: 7 to 19 h on working days, unless the test says otherwise.
   Timetable plan(metering::Day day) {

@@ -159,7 +159,7 @@ inline std::unique_ptr<HiddenEffect> make(const EffectKind& kind, double strengt
                                           EffectSettings settings = {}) {
   settings.strength = strength;
   settings.rng = Rng{42, 7};
-  return kind.make(settings, drawings);
+  return make(kind, settings, drawings);
 }
 
 }  // namespace recald::simulators::hand_made
