@@ -34,11 +34,10 @@ Result<DeviceTotals> serve_devices(std::vector<EndpointPlan> plans,
   signals.async_wait([&](const boost::system::error_code&, int) { loop.stop(); });
   std::vector<std::unique_ptr<DeviceServer>> servers;
   for (EndpointPlan& plan : plans) {
-    auto server = plan.transport == Transport::tcp
-                      ? open_tcp_server(loop, std::move(plan), clock)
-                      : open_serial_server(loop, std::move(plan), clock);
-    if (!server) return tl::unexpected(server.error());
-    servers.push_back(std::move(*server));
+    auto server =
+        TRY(plan.transport == Transport::tcp ? open_tcp_server(loop, std::move(plan), clock)
+                                             : open_serial_server(loop, std::move(plan), clock));
+    servers.push_back(std::move(server));
   }
   tell(servers, told);
   loop.run();

@@ -108,26 +108,25 @@ Result<std::vector<RecordedValue>> read_values(const std::filesystem::path& file
 }  // namespace
 
 Result<LoadShape> read_recorded_load(const std::filesystem::path& file, std::string_view meter) {
-  const auto values = read_values(file, meter);
-  if (!values) return tl::unexpected(values.error());
-  if (values->empty()) {
+  const auto values = TRY(read_values(file, meter));
+  if (values.empty()) {
     return failure(ErrorCode::not_found,
                    fmt::format("{}: there is no meter '{}'", file.string(), meter));
   }
-  if (values->size() < 2) {
+  if (values.size() < 2) {
     return failure(
         ErrorCode::not_enough_data,
         fmt::format("{}: one reading of meter '{}' does not tell how long an interval is",
                     file.string(), meter));
   }
   seconds step = seconds::max();
-  for (std::size_t i = 1; i < values->size(); ++i) {
-    step = std::min(step, (*values)[i].begin - (*values)[i - 1].begin);
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    step = std::min(step, values[i].begin - values[i - 1].begin);
   }
   std::vector<double> power_kW;
   double last_kW = 0.0;
-  for (const RecordedValue& reading : *values) {
-    const auto index = static_cast<std::size_t>((reading.begin - values->front().begin) / step);
+  for (const RecordedValue& reading : values) {
+    const auto index = static_cast<std::size_t>((reading.begin - values.front().begin) / step);
     power_kW.resize(index, last_kW);
     // Steam readings may also be a mass, so look among its units.
     const auto unit = metering::find_unit(reading.unit, metering::Utility::steam, {});
@@ -136,7 +135,7 @@ Result<LoadShape> read_recorded_load(const std::filesystem::path& file, std::str
     if (reading.value) last_kW = unit->mean_kW(*reading.value, step);
     power_kW.push_back(last_kW);
   }
-  return LoadShape::recorded(values->front().begin, step, std::move(power_kW));
+  return LoadShape::recorded(values.front().begin, step, std::move(power_kW));
 }
 
 }  // namespace recald::simulators

@@ -102,11 +102,10 @@ class SerialServer final : public DeviceServer {
 Result<std::unique_ptr<DeviceServer>> open_serial_server(boost::asio::io_context& loop,
                                                          EndpointPlan plan,
                                                          const metering::TrialClock& clock) {
-  auto terminal = Pseudoterminal::open();
-  if (!terminal) return tl::unexpected(terminal.error());
-  const std::string device = (*terminal)->device();
+  auto terminal = TRY(Pseudoterminal::open());
+  const std::string device = terminal->device();
   const fs::path link = plan.link;
-  auto server = std::make_unique<SerialServer>(loop, std::move(plan), clock, std::move(*terminal));
+  auto server = std::make_unique<SerialServer>(loop, std::move(plan), clock, std::move(terminal));
   if (const auto error = make_link(link, device)) {
     return failure(ErrorCode::io_failed, fmt::format("cannot make the link {} ({}); choose a name "
                                                      "that is free",

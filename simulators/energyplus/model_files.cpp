@@ -69,30 +69,28 @@ class Folder {
 }  // namespace
 
 Result<void> write_model_files(const ModelFileOptions& options) {
-  const auto building = building_of(options.kind, options.seed);
-  if (!building) return tl::unexpected(building.error());
-  const auto local = metering::LocalCalendar::open(kTimeZone);
-  if (!local) return tl::unexpected(local.error());
+  const auto building = TRY(building_of(options.kind, options.seed));
+  const auto local = TRY(metering::LocalCalendar::open(kTimeZone));
   Folder out(options.out);
-  out.write("model.epJSON", building->model.dump(1));
+  out.write("model.epJSON", building.model.dump(1));
   if (options.with_truth) {
-    out.write("truth.epJSON", building->truth.dump(1));
-    out.write("truth.json", building->description.dump(1));
+    out.write("truth.epJSON", building.truth.dump(1));
+    out.write("truth.json", building.description.dump(1));
   }
   if (options.years == 0) return out.so_far();
 
-  const Calendar calendar(building->use);
+  const Calendar calendar(building.use);
   const Place place = Drawings{}.place;
   const auto hours = simulate_hours(hot_humid_climate(place), options.first_year, options.years,
-                                    options.seed, *local);
+                                    options.seed, local);
   out.write("weather.csv", weather_csv(hours));
   for (int year = options.first_year; year < options.first_year + options.years; ++year) {
     out.write(fmt::format("{}.epw", year),
-              epw_text(hours, year, place, *local, calendar.holidays_of(std::chrono::year{year})));
+              epw_text(hours, year, place, local, calendar.holidays_of(std::chrono::year{year})));
     if (!options.with_truth) continue;
     const std::string csv = fmt::format("habits-{}.csv", year);
     const Habits habits =
-        with_habits(building->truth, building->schedules, year, calendar, options.seed, csv);
+        with_habits(building.truth, building.schedules, year, calendar, options.seed, csv);
     out.write(csv, habits.csv);
     out.write(fmt::format("truth-{}.epJSON", year), reporting(habits.model, year).dump(1));
   }

@@ -109,8 +109,7 @@ Result<std::string> readings_csv(const ReadingOptions& options) {
   for (std::size_t i = 0; i < options.meters.size(); ++i) {
     Series series;
     for (const std::filesystem::path& run : options.runs) {
-      const auto read = read_meter(run, options.meters[i], options.standard_offset, series);
-      if (!read) return tl::unexpected(read.error());
+      TRY(read_meter(run, options.meters[i], options.standard_offset, series));
     }
     spoil(series, options, i);
     for (const auto& [start, value] : series) rows[{start, i}] = value;

@@ -41,20 +41,19 @@ struct Sum {
 Result<Recording> record(Building& building, const Period& period, std::uint64_t seed) {
   assert(period.years >= 1 && kInterval % building.step() == std::chrono::seconds{0});
   const Drawings& drawings = building.truth().drawings;
-  const auto calendar = metering::LocalCalendar::open(drawings.time_zone);
-  if (!calendar) return tl::unexpected(calendar.error());
+  const auto calendar = TRY(metering::LocalCalendar::open(drawings.time_zone));
   using std::chrono::January;
   const std::chrono::year first{period.start_year};
   const std::chrono::year after{period.start_year + period.years};
-  const metering::Instant begin = calendar->month_span(first / January).begin;
-  const metering::Instant end = calendar->month_span(after / January).begin;
+  const metering::Instant begin = calendar.month_span(first / January).begin;
+  const metering::Instant end = calendar.month_span(after / January).begin;
 
   const std::chrono::seconds step = building.step();
   const auto steps = static_cast<int>(kInterval / step);
   WeatherGenerator weather(climate_of(drawings.climate, drawings.place), begin - kRunIn,
                            stream_of(seed, Stream::weather), step);
   for (metering::Instant now = begin - kRunIn; now < begin; now += step) {
-    building.advance(weather.advance(), now, calendar->local_time(now));
+    building.advance(weather.advance(), now, calendar.local_time(now));
   }
   Recording recording{begin, {}, {}};
   const auto slots = static_cast<std::size_t>((end - begin) / kInterval);
@@ -62,7 +61,7 @@ Result<Recording> record(Building& building, const Period& period, std::uint64_t
   recording.power.reserve(slots);
   for (metering::Instant now = begin; now < end; now += kInterval) {
     Sum sum;
-    const metering::LocalTime local = calendar->local_time(now);
+    const metering::LocalTime local = calendar.local_time(now);
     for (int i = 0; i < steps; ++i) {
       const Outdoors outdoors = weather.advance();
       const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(i * step);
