@@ -4,7 +4,6 @@
 #include <functional>
 #include <limits>
 
-#include "core/absent.hpp"
 #include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 
@@ -94,12 +93,7 @@ Effect constant_flow_pumps() {
                  .unit = "kW",
                  .prior = half_normal(0.05 * pump_reference_kW(facts)),
                  .neutral = 0.0},
-                {.name = "season",
-                 .unit = "1: all year, 2: warm months, 3: cold months",
-                 .prior = UniformPrior{0.5, 3.5},
-                 .neutral = kAbsent,
-                 .scan = {1.0, 2.0, 3.0},
-                 .choice = true}};
+                one_of_three("season", "1: all year, 2: warm months, 3: cold months")};
       },
       // Leaves out the heat of the pumps in the water, a few per cent of their power.
       .bind =

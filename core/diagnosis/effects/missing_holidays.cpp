@@ -81,12 +81,7 @@ Effect missing_holidays() {
       .parameters = [](const SiteFacts&) -> Parameters {
         return {any_share("shut_share", "share of the building"),
                 any_share("plant_share", "share of the plant that is off"),
-                {.name = "calendar",
-                 .unit = "1: North America, 2: Europe, 3: Britain",
-                 .prior = UniformPrior{0.5, 3.5},
-                 .neutral = kAbsent,
-                 .scan = {1.0, 2.0, 3.0},
-                 .choice = true}};
+                one_of_three("calendar", "1: North America, 2: Europe, 3: Britain")};
       },
       // Lights and plugs get the meter's own Sunday values, not an assumed share of the workday's:
       // in real meters holidays look like Sundays.

@@ -1,10 +1,10 @@
 /// Fewer people in term breaks.
 #include <chrono>
 
-#include "core/absent.hpp"
 #include "core/diagnosis/date_table.hpp"
 #include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
+#include "core/diagnosis/effects/support/priors.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {
@@ -93,12 +93,7 @@ Effect semester_calendar() {
                  .unit = "share of the people",
                  .prior = UniformPrior{0.0, 0.7},
                  .neutral = 0.0},
-                {.name = "calendar",
-                 .unit = "1: school, 2: college, 3: university",
-                 .prior = UniformPrior{0.5, 3.5},
-                 .neutral = kAbsent,
-                 .scan = {1.0, 2.0, 3.0},
-                 .choice = true}};
+                one_of_three("calendar", "1: school, 2: college, 3: university")};
       },
       .bind =
           [](const SiteFacts& facts, Values values, int) {

@@ -42,4 +42,14 @@ namespace recald::diagnosis::effects {
           .scan = {0.0, 1.0}};
 }
 
+/// One of three, chosen and not fitted: 1, 2 or 3. @param unit  What each of them means
+[[nodiscard]] inline EffectParameter one_of_three(const char* name, const char* unit) {
+  return {.name = name,
+          .unit = unit,
+          .prior = UniformPrior{0.5, 3.5},
+          .neutral = kAbsent,
+          .scan = {1.0, 2.0, 3.0},
+          .choice = true};
+}
+
 }  // namespace recald::diagnosis::effects
