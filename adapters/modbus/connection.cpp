@@ -12,6 +12,8 @@
 #include <cstring>
 #include <thread>
 
+#include "core/result.hpp"
+
 namespace recald::modbus {
 namespace {
 
