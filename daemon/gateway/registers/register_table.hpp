@@ -39,8 +39,8 @@ struct RegisterEntry {
   std::string_view name;
   std::string_view unit;  ///< Empty: a count or a code.
   std::string_view meaning;
-  std::span<const RegisterWord> words;  ///< Of a code; empty: none, or those of the alarms.
   double (*value)(const Facts&);
+  std::span<const RegisterWord> words = {};  ///< Of a code; empty: none, or those of the alarms.
 };
 
 [[nodiscard]] std::span<const RegisterEntry<SiteFacts>> site_registers();
