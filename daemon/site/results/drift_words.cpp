@@ -8,6 +8,7 @@
 #include "core/absent.hpp"
 #include "core/diagnosis/effect.hpp"
 #include "core/display/id_words.hpp"
+#include "core/display/prose.hpp"
 #include "core/display/unit.hpp"
 #include "core/display/warning.hpp"
 #include "daemon/site/results/cost_words.hpp"
