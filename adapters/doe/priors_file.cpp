@@ -84,17 +84,6 @@ std::string quoted(const std::string& text) {
   return '"' + inside + '"';
 }
 
-struct NumbersOf {
-  PriorNumbers operator()(const TriangularPrior& p) const { return {p.min, p.mode, p.max, {}}; }
-  PriorNumbers operator()(const UniformPrior& p) const { return {p.min, {}, p.max, {}}; }
-  PriorNumbers operator()(const TruncatedNormalPrior& p) const {
-    return {p.min, p.location, p.max, p.sd};
-  }
-  PriorNumbers operator()(const LogNormalPrior& p) const {
-    return {p.min, p.median, p.max, p.log_sd};
-  }
-};
-
 }  // namespace
 
 Result<std::vector<Parameter>> read_priors(const std::filesystem::path& file) {
@@ -115,7 +104,7 @@ Result<std::vector<Parameter>> read_priors(const std::filesystem::path& file) {
 std::string priors_csv(std::span<const Parameter> parameters) {
   std::string text = "parameter,unit,min,mode,max,distribution,sd\n";
   for (const Parameter& parameter : parameters) {
-    const PriorNumbers n = std::visit(NumbersOf{}, parameter.prior.distribution());
+    const PriorNumbers n = parameter.prior.numbers();
     text +=
         fmt::format("{},{},{},{},{},{},{}\n", quoted(parameter.name), quoted(parameter.unit),
                     field(n.min), field(n.mode), field(n.max), parameter.prior.name(), field(n.sd));

@@ -233,6 +233,19 @@ Result<Prior> Prior::named(std::string_view distribution, const PriorNumbers& nu
   return failure(ErrorCode::invalid_value, std::move(sentence));
 }
 
+PriorNumbers Prior::numbers() const {
+  if (const auto* p = std::get_if<TriangularPrior>(&distribution_)) {
+    return {p->min, p->mode, p->max, {}};
+  }
+  if (const auto* p = std::get_if<TruncatedNormalPrior>(&distribution_)) {
+    return {p->min, p->location, p->max, p->sd};
+  }
+  if (const auto* p = std::get_if<LogNormalPrior>(&distribution_)) {
+    return {p->min, p->median, p->max, p->log_sd};
+  }
+  return {min(), {}, max(), {}};
+}
+
 Prior::Prior(double min, double mode, double max) : Prior(TriangularPrior{min, mode, max}) {}
 
 Prior::Prior(Checked, Distribution distribution) : distribution_(std::move(distribution)) {

@@ -104,6 +104,8 @@ class Prior {
   [[nodiscard]] const Distribution& distribution() const { return distribution_; }
   /// "triangular", "uniform", "truncated_normal", "log_normal".
   [[nodiscard]] std::string_view name() const;
+  /// With the name what `named` makes the same prior of; infinite bounds are as they are.
+  [[nodiscard]] PriorNumbers numbers() const;
 
   bool operator==(const Prior& other) const { return distribution_ == other.distribution_; }
 
