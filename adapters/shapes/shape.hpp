@@ -1,6 +1,8 @@
 /// One list of fields per struct, by which documents are written and read.
 #pragma once
 
+#include <boost/preprocessor/control/iif.hpp>
+#include <boost/preprocessor/punctuation/is_begin_parens.hpp>
 #include <boost/preprocessor/seq/enum.hpp>
 #include <boost/preprocessor/seq/transform.hpp>
 #include <boost/preprocessor/stringize.hpp>
@@ -30,12 +32,19 @@ concept Listed = requires {
 
 }  // namespace recald::shapes
 
-/// `SHAPE(Progress, entries, events, results)`, once for a struct, in no namespace: its members,
-/// and thereby their names in documents.
+/// `SHAPE(Progress, entries, events, (result, "document"))`, once for a struct, in no namespace:
+/// its members, which are called the same in documents unless another name is given.
 #define SHAPE(Struct, ...)                                                                  \
   template <>                                                                               \
   inline constexpr auto recald::shapes::fields<Struct> = std::make_tuple(BOOST_PP_SEQ_ENUM( \
       BOOST_PP_SEQ_TRANSFORM(RECALD_FIELD, Struct, BOOST_PP_VARIADIC_TO_SEQ(__VA_ARGS__))))
 
-#define RECALD_FIELD(round, Struct, member) \
+#define RECALD_FIELD(round, Struct, member)                                              \
+  BOOST_PP_IIF(BOOST_PP_IS_BEGIN_PARENS(member), RECALD_NAMED_FIELD, RECALD_PLAIN_FIELD) \
+  (Struct, member)
+#define RECALD_PLAIN_FIELD(Struct, member) \
   recald::shapes::Field(BOOST_PP_STRINGIZE(member), &Struct::member)
+#define RECALD_NAMED_FIELD(Struct, member) RECALD_NAMED_AS(Struct, RECALD_BOTH member)
+#define RECALD_BOTH(member, name) member, name
+#define RECALD_NAMED_AS(...) RECALD_NAMED_OF(__VA_ARGS__)
+#define RECALD_NAMED_OF(Struct, member, name) recald::shapes::Field(name, &Struct::member)

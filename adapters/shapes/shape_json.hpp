@@ -1,6 +1,8 @@
 /// Listed structs as JSON, and back.
 #pragma once
 
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 
 #include "adapters/shapes/shape.hpp"
 #include "core/absent.hpp"
+#include "core/metering/civil_time.hpp"
 
 namespace recald::shapes {
 
@@ -24,15 +27,54 @@ template <class T>
 inline constexpr bool is_list = false;
 template <class T>
 inline constexpr bool is_list<std::vector<T>> = true;
+template <class T, std::size_t kSize>
+inline constexpr bool is_list<std::array<T, kSize>> = true;
 template <class T>
 inline constexpr bool is_map = false;
 template <class T>
 inline constexpr bool is_map<std::map<std::string, T>> = true;
 
+/// How a type is written that is none of these: `static Json json_of(const T&)`, and, where it is
+/// read strictly (strict_json.hpp), `static T read(StrictReader&, const nlohmann::json&, const
+/// char* key)`.
+template <class T>
+struct Form;
+
+template <class T>
+concept Formed = requires(const T& value) {
+  Form<T>::json_of(value);
+};
+
+template <>
+struct Form<metering::Month> {
+  static Json json_of(metering::Month month) { return metering::to_string(month); }
+};
+template <>
+struct Form<metering::Day> {
+  static Json json_of(metering::Day day) { return metering::to_string(day); }
+};
+/// Seconds since 1970.
+template <>
+struct Form<metering::Instant> {
+  static Json json_of(metering::Instant time) { return time.time_since_epoch().count(); }
+};
+template <>
+struct Form<std::chrono::seconds> {
+  static Json json_of(std::chrono::seconds span) { return span.count(); }
+};
+
+/// What reading begins with.
+template <class T>
+[[nodiscard]] T blank() {
+  return T{};
+}
+
 /// A number that is not finite, and what is absent, is null.
 template <class T>
 [[nodiscard]] Json json_of(const T& value) {
-  if constexpr (std::is_floating_point_v<T>) {
+  if constexpr (Formed<T>) {
+    return Form<T>::json_of(value);
+  } else if constexpr (std::is_floating_point_v<T>) {
     return std::isfinite(value) ? Json(value) : Json();
   } else if constexpr (is_optional<T>) {
     return value ? json_of(*value) : Json();

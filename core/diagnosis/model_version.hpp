@@ -79,10 +79,10 @@ enum class VersionStatus {
 inline constexpr std::array<std::string_view, 4> kVersionStatuses = {"proposed", "accepted",
                                                                      "retired", "reverted"};
 
-[[nodiscard]] constexpr std::string_view to_string(VersionAuthor author) {
+[[nodiscard]] constexpr std::string_view name_of(VersionAuthor author) {
   return kVersionAuthors[static_cast<std::size_t>(author)];
 }
-[[nodiscard]] constexpr std::string_view to_string(VersionStatus status) {
+[[nodiscard]] constexpr std::string_view name_of(VersionStatus status) {
   return kVersionStatuses[static_cast<std::size_t>(status)];
 }
 

@@ -40,7 +40,7 @@ std::string list_words(const models::VersionList& list) {
   for (const ModelVersion& version : list.versions) {
     text += fmt::format("{} {:<12}  {:<8}  {:<20}  {}\n",
                         version.version == list.active ? '*' : ' ', short_version(version.version),
-                        to_string(version.status), version.created_at, effects_words(version));
+                        name_of(version.status), version.created_at, effects_words(version));
   }
   return text;
 }
@@ -86,8 +86,8 @@ std::string version_words(const ModelVersion& version) {
   }
   std::string text =
       fmt::format("{}, {} ({}), made {}\nparent {}, data {}, catalogue {}\n",
-                  short_version(version.version), to_string(version.status),
-                  to_string(version.author), version.created_at, short_version(version.parent),
+                  short_version(version.version), name_of(version.status), name_of(version.author),
+                  version.created_at, short_version(version.parent),
                   short_version(version.data_revision), version.catalogue_version);
   for (const AddedEffect& added : version.effects) text += effect_words(added);
   return text;

@@ -17,7 +17,7 @@ using report::Table;
 
 Cell version_state_cell(const diagnosis::ModelVersion& version, const std::string& active) {
   if (version.version == active) return {"✔ in force", "good"};
-  return {std::string{to_string(version.status)}};
+  return {std::string{name_of(version.status)}};
 }
 
 /// A time of a version's file.

@@ -21,8 +21,8 @@ nlohmann::ordered_json versions_json(const models::VersionList& list) {
     versions.push_back({{"version", version.version},
                         {"parent", version.parent},
                         {"active", version.version == list.active},
-                        {"status", to_string(version.status)},
-                        {"author", to_string(version.author)},
+                        {"status", name_of(version.status)},
+                        {"author", name_of(version.author)},
                         {"created_at", version.created_at},
                         {"effects", effect_ids(version)}});
   }
