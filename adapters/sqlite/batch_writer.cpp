@@ -4,9 +4,9 @@
 
 #include <utility>
 
-#include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/outbox_table.hpp"
 #include "adapters/sqlite/register_json.hpp"
+#include "adapters/sqlite/rows.hpp"
 #include "adapters/sqlite/tables.hpp"
 #include "core/metering/placement.hpp"
 
@@ -87,9 +87,9 @@ Result<void> BatchWriter::put_intervals(const StoreBatch& batch, CommitCounts& c
 Result<std::optional<StoredInterval>> BatchWriter::latest(std::uint32_t meter,
                                                           metering::Instant start) {
   Statement& query = statements_->latest_interval;
-  const auto row = TRY(query.bind(0, std::int64_t{meter}).bind(1, seconds_of(start)).step());
+  const auto row = TRY(bound(query, meter, start).step());
   if (!row) return std::optional<StoredInterval>{};
-  const StoredInterval found = read_interval(query, meter);
+  const StoredInterval found = read_interval(Columns{query}, meter);
   query.reset();
   return std::optional{found};
 }
@@ -98,7 +98,7 @@ Result<bool> BatchWriter::is_newer_than_all(std::uint32_t meter, metering::Insta
   auto known = newest_.find(meter);
   if (known == newest_.end()) {
     Statement& query = statements_->newest_interval;
-    TRY(query.bind(0, std::int64_t{meter}).step());
+    TRY(bound(query, meter).step());
     const auto newest = query.is_null(0) ? metering::Instant::min() : instant_of(query.integer(0));
     query.reset();
     known = newest_.emplace(meter, newest).first;
@@ -132,46 +132,26 @@ Result<void> BatchWriter::put_interval(const StoreBatch::Interval& interval,
   }
   ++counts.taken;
   const std::int64_t revision = known ? known->revision + 1 : 0;
-  Statement& insert = statements_->insert_interval;
-  insert.bind(0, std::int64_t{reading.meter})
-      .bind(1, seconds_of(reading.start))
-      .bind(2, revision)
-      .bind(3, reading.mean_kW)
-      .bind(4, static_cast<std::int64_t>(reading.validity))
-      .bind(5, std::int64_t{reading.late})
-      .bind(6, static_cast<std::int64_t>(reading.reasons));
-  if (edit) {
-    insert.bind(7, *edit);
-  } else {
-    insert.bind_null(7);
-  }
-  if (auto inserted = insert.run(); !inserted) return inserted;
-  return statements_->insert_outbox_entry.bind(0, std::int64_t{reading.meter})
-      .bind(1, seconds_of(reading.start))
-      .bind_null(2)
-      .bind(3, revision)
+  TRY(bound(statements_->insert_interval, reading.meter, reading.start, revision, reading.mean_kW,
+            reading.validity, reading.late, reading.reasons, edit)
+          .run());
+  return bound(statements_->insert_outbox_entry, reading.meter, reading.start,
+               std::optional<metering::Month>{}, revision)
       .run();
 }
 
 Result<void> BatchWriter::put_registers(const StoreBatch& batch) {
   for (const StoreBatch::Register& entry : batch.registers) {
-    const auto put = statements_->put_register.bind(0, std::int64_t{entry.meter})
-                         .bind(1, std::string_view{entry.state.field})
-                         .bind(2, std::string_view{to_json(entry.state)})
-                         .run();
-    if (!put) return put;
+    const std::string state = to_json(entry.state);
+    TRY(bound(statements_->put_register, entry.meter, entry.state.field, state).run());
   }
   return {};
 }
 
 Result<void> BatchWriter::put_samples(const StoreBatch& batch) {
   for (const RawSample& sample : batch.samples) {
-    const auto put = statements_->insert_sample.bind(0, std::int64_t{sample.meter})
-                         .bind(1, seconds_of(sample.time))
-                         .bind(2, std::string_view{sample.field})
-                         .bind(3, sample.value)
-                         .run();
-    if (!put) return put;
+    TRY(bound(statements_->insert_sample, sample.meter, sample.time, sample.field, sample.value)
+            .run());
   }
   return {};
 }
@@ -179,11 +159,8 @@ Result<void> BatchWriter::put_samples(const StoreBatch& batch) {
 /// @return whether the event also happened within the last day.
 Result<bool> BatchWriter::count_event(const StoreEvent& event) {
   Statement& count = statements_->count_event;
-  const auto row = TRY(count.bind(0, seconds_of(event.time))
-                           .bind(1, std::string_view{event.text})
-                           .bind(2, std::string_view{event.kind})
-                           .bind(3, std::string_view{event.subject})
-                           .bind(4, seconds_of(event.time - std::chrono::days{1}))
+  const auto row = TRY(bound(count, event.time, event.text, event.kind, event.subject,
+                             event.time - std::chrono::days{1})
                            .step());
   if (!row) return false;
   TRY(count.run());
@@ -194,23 +171,16 @@ Result<void> BatchWriter::put_events(const StoreBatch& batch) {
   for (const StoreEvent& event : batch.events) {
     const auto counted = TRY(event.is_counted ? count_event(event) : Result<bool>{false});
     if (counted) continue;
-    const auto put = statements_->insert_event.bind(0, seconds_of(event.time))
-                         .bind(1, static_cast<std::int64_t>(event.severity))
-                         .bind(2, std::string_view{event.kind})
-                         .bind(3, std::string_view{event.subject})
-                         .bind(4, std::string_view{event.text})
-                         .run();
-    if (!put) return put;
+    TRY(bound(statements_->insert_event, event.time, event.severity, event.kind, event.subject,
+              event.text)
+            .run());
   }
   return {};
 }
 
 Result<void> BatchWriter::reopen_months(const StoreBatch& batch) {
   for (const MeterMonth& changed : batch.reopened) {
-    const auto put = statements_->reopen_month.bind(0, std::int64_t{changed.meter})
-                         .bind(1, std::string_view{metering::to_string(changed.month)})
-                         .run();
-    if (!put) return put;
+    TRY(bound(statements_->reopen_month, changed.meter, changed.month).run());
   }
   return {};
 }

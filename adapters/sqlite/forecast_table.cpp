@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/rows.hpp"
 
 namespace recald::sqlite {
 namespace {
@@ -26,44 +26,19 @@ bool is_storable(const StoredForecast& one) {
   return std::ranges::none_of(figures, [](double figure) { return std::isnan(figure); });
 }
 
-void bind_forecast(Statement& insert, const StoredForecast& one) {
-  insert.bind(0, std::string_view{one.output})
-      .bind(1, std::string_view{metering::to_string(one.month)})
-      .bind(2, std::string_view{one.model_version})
-      .bind(3, std::string_view{one.data_revision})
-      .bind(4, seconds_of(one.made))
-      .bind(5, one.mean)
-      .bind(6, one.sd)
-      .bind(7, one.q05)
-      .bind(8, one.q50)
-      .bind(9, one.q95)
-      .bind(10, one.measured)
-      .bind(11, one.pit)
-      .bind(12, one.standardised)
-      .bind(13, one.log_score)
-      .bind(14, one.crps);
-}
-
-/// Reads the columns in the order of the struct. @return malformed when the month's
-/// name is invalid.
-Result<StoredForecast> read_forecast(const Statement& row) {
-  const auto month = TRY(metering::parse_month(row.text(1)));
-  return StoredForecast{.output = row.text(0),
-                        .month = month,
-                        .revision = static_cast<int>(row.integer(2)),
-                        .model_version = row.text(3),
-                        .data_revision = row.text(4),
-                        .made = instant_of(row.integer(5)),
-                        .mean = row.real(6),
-                        .sd = row.real(7),
-                        .q05 = row.real(8),
-                        .q50 = row.real(9),
-                        .q95 = row.real(10),
-                        .measured = row.real(11),
-                        .pit = row.real(12),
-                        .standardised = row.real(13),
-                        .log_score = row.real(14),
-                        .crps = row.real(15)};
+/// Columns in the order of the struct. @return malformed when the month's name is invalid.
+Result<StoredForecast> read_forecast(Columns columns) {
+  StoredForecast one{.output = columns, .month = {}};
+  one.month = TRY(columns.month());
+  one.revision = columns;
+  one.model_version = columns.next<std::string>();
+  one.data_revision = columns.next<std::string>();
+  one.made = columns;
+  for (double* const figure : {&one.mean, &one.sd, &one.q05, &one.q50, &one.q95, &one.measured,
+                               &one.pit, &one.standardised, &one.log_score, &one.crps}) {
+    *figure = columns;
+  }
+  return one;
 }
 
 }  // namespace
@@ -72,8 +47,10 @@ Result<void> insert_forecasts(Database& database, std::span<const StoredForecast
   auto insert = TRY(database.prepare(kInsert));
   for (const StoredForecast& one : forecasts) {
     if (!is_storable(one)) continue;
-    bind_forecast(insert, one);
-    TRY(insert.run());
+    TRY(bound(insert, one.output, one.month, one.model_version, one.data_revision, one.made,
+              one.mean, one.sd, one.q05, one.q50, one.q95, one.measured, one.pit, one.standardised,
+              one.log_score, one.crps)
+            .run());
   }
   return {};
 }
@@ -83,13 +60,7 @@ Result<std::vector<StoredForecast>> stored_forecasts(Database& database) {
       "SELECT output, month, revision, model_version, data_revision, made, mean, sd, q05, q50, q95,"
       " measured, pit, standardised, log_score, crps FROM forecast"
       " ORDER BY output, month, revision"));
-  std::vector<StoredForecast> forecasts;
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) return forecasts;
-    auto one = TRY(read_forecast(query));
-    forecasts.push_back(std::move(one));
-  }
+  return all_rows(query, read_forecast);
 }
 
 }  // namespace recald::sqlite

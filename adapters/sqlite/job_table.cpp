@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adapters/results/job_result_json.hpp"
+#include "adapters/sqlite/rows.hpp"
 #include "adapters/sqlite/tables.hpp"
 
 namespace recald::sqlite {
@@ -15,64 +16,35 @@ using metering::Instant;
 constexpr auto kColumns =
     "number, kind, state, asked_by, asked, started, ended, accepted, message, folder, tries";
 
-void bind_instant(Statement& statement, int parameter, const std::optional<Instant>& t) {
-  if (t) {
-    statement.bind(parameter, std::int64_t{t->time_since_epoch().count()});
-  } else {
-    statement.bind_null(parameter);
-  }
-}
-
-std::optional<Instant> instant_at(const Statement& row, int column) {
-  if (row.is_null(column)) return {};
-  return Instant{std::chrono::seconds{row.integer(column)}};
-}
-
-/// Binds parameters 0 to 10: all of a job except its number.
-void bind_job(Statement& statement, const StoredJob& job) {
-  statement.bind(0, static_cast<std::int64_t>(job.kind))
-      .bind(1, static_cast<std::int64_t>(job.state))
-      .bind(2, std::string_view{job.asked_by})
-      .bind(3, std::int64_t{job.asked.time_since_epoch().count()});
-  bind_instant(statement, 4, job.started);
-  bind_instant(statement, 5, job.ended);
-  statement.bind(6, std::int64_t{job.accepted})
-      .bind(7, std::string_view{job.message})
-      .bind(8, std::string_view{job.folder})
-      .bind(9, std::string_view{job.result.document})
-      .bind(10, std::int64_t{job.tries});
+/// Binds all of a job except its number, which an update has at the end.
+template <class... More>
+Statement& bind_job(Statement& statement, const StoredJob& job, const More&... more) {
+  return bound(statement, job.kind, job.state, job.asked_by, job.asked, job.started, job.ended,
+               job.accepted, job.message, job.folder, job.result.document, job.tries, more...);
 }
 
 /// Reads columns as in `kColumns`.
-StoredJob read_job(const Statement& row) {
-  StoredJob job{.number = row.integer(0),
-                .kind = static_cast<JobKind>(row.integer(1)),
-                .state = static_cast<JobState>(row.integer(2)),
-                .asked_by = row.text(3),
-                .asked = Instant{std::chrono::seconds{row.integer(4)}},
-                .started = instant_at(row, 5),
-                .ended = instant_at(row, 6)};
-  job.accepted = row.integer(7) != 0;
-  job.message = row.text(8);
-  job.folder = row.text(9);
-  job.tries = static_cast<int>(row.integer(10));
-  return job;
+StoredJob read_job(Columns columns) {
+  return {.number = columns,
+          .kind = columns,
+          .state = columns,
+          .asked_by = columns,
+          .asked = columns,
+          .started = columns.next<std::optional<Instant>>(),
+          .ended = columns.next<std::optional<Instant>>(),
+          .accepted = columns,
+          .message = columns,
+          .folder = columns,
+          .tries = columns};
 }
 
-Result<std::vector<StoredJob>> read_jobs(Statement& query) {
-  std::vector<StoredJob> jobs;
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) return jobs;
-    jobs.push_back(read_job(query));
-  }
-}
+Result<std::vector<StoredJob>> read_jobs(Statement& query) { return all_rows(query, read_job); }
 
 /// Reads the row of a query for `kColumns` and the result.
 Result<std::optional<StoredJob>> read_whole_job(Statement& query) {
   const auto row = TRY(query.step());
   if (!row) return std::optional<StoredJob>{};
-  StoredJob job = read_job(query);
+  StoredJob job = read_job(Columns{query});
   job.result = results::read_job_result(query.text(11));
   query.reset();
   return std::optional{std::move(job)};
@@ -85,8 +57,7 @@ Result<std::int64_t> insert_job(Database& database, const StoredJob& job) {
       "INSERT INTO job VALUES (NULL, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, {}) RETURNING "
       "number",
       sum_of("job", 11))));
-  bind_job(insert, job);
-  TRY(insert.step());
+  TRY(bind_job(insert, job).step());
   const std::int64_t number = insert.integer(0);
   TRY(insert.run());
   return number;
@@ -98,8 +69,7 @@ Result<void> update_job(Database& database, const StoredJob& job) {
       "accepted = ?7, message = ?8, folder = ?9, result = ?10, tries = ?11, sum = {} "
       "WHERE number = ?12 RETURNING number",
       sum_of("job", 11))));
-  bind_job(update, job);
-  const auto row = TRY(update.bind(11, job.number).step());
+  const auto row = TRY(bind_job(update, job, job.number).step());
   if (!row) {
     return failure(ErrorCode::not_found, fmt::format("there is no job {}", job.number));
   }
@@ -109,15 +79,13 @@ Result<void> update_job(Database& database, const StoredJob& job) {
 Result<std::optional<StoredJob>> find_job(Database& database, std::int64_t number) {
   auto query =
       TRY(database.prepare(fmt::format("SELECT {}, result FROM job WHERE number = ?", kColumns)));
-  query.bind(0, number);
-  return read_whole_job(query);
+  return read_whole_job(bound(query, number));
 }
 
 Result<std::vector<StoredJob>> newest_jobs(Database& database, JobKind kind, int limit) {
   auto query = TRY(database.prepare(
       fmt::format("SELECT {} FROM job WHERE kind = ? ORDER BY number DESC LIMIT ?", kColumns)));
-  query.bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{limit});
-  return read_jobs(query);
+  return read_jobs(bound(query, kind, limit));
 }
 
 Result<std::optional<StoredJob>> oldest_finished_job_beyond(Database& database, JobKind kind,
@@ -128,8 +96,7 @@ Result<std::optional<StoredJob>> oldest_finished_job_beyond(Database& database, 
       "LIMIT 1 OFFSET ?2 - 1) AND number <> coalesce((SELECT max(number) FROM job WHERE kind = ?1 "
       "AND accepted = 1), 0) ORDER BY number LIMIT 1",
       kColumns)));
-  query.bind(0, static_cast<std::int64_t>(kind)).bind(1, std::int64_t{kept});
-  auto jobs = TRY(read_jobs(query));
+  auto jobs = TRY(read_jobs(bound(query, kind, kept)));
   return jobs.empty() ? std::nullopt : std::optional{std::move(jobs.front())};
 }
 
@@ -143,8 +110,7 @@ Result<std::optional<StoredJob>> last_accepted_job(Database& database, JobKind k
       TRY(database.prepare(fmt::format("SELECT {}, result FROM job WHERE kind = ? AND accepted = 1 "
                                        "ORDER BY number DESC LIMIT 1",
                                        kColumns)));
-  query.bind(0, static_cast<std::int64_t>(kind));
-  return read_whole_job(query);
+  return read_whole_job(bound(query, kind));
 }
 
 Result<std::vector<StoredJob>> unfinished_jobs(Database& database) {

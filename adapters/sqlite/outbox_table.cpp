@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "adapters/ports/destination_cursors.hpp"
-#include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/month_table.hpp"
+#include "adapters/sqlite/rows.hpp"
 #include "adapters/sqlite/tables.hpp"
 
 namespace recald::sqlite {
@@ -27,7 +27,7 @@ Result<std::int64_t> last_number(Database& database) {
 
 Result<void> put_cursor(Database& database, const std::string& destination, std::int64_t position) {
   auto put = TRY(database.prepare(insert_into("cursor", 2, "INSERT OR REPLACE")));
-  return put.bind(0, std::string_view{destination}).bind(1, position).run();
+  return bound(put, destination, position).run();
 }
 
 /// Deletes what every destination has had, and all where there is none.
@@ -40,12 +40,7 @@ Result<void> forget_told(Database& database) {
 Result<std::vector<std::string>> kept_cursors(Database& database) {
   auto query =
       TRY(database.prepare("SELECT destination FROM cursor WHERE destination GLOB 'outbox *'"));
-  std::vector<std::string> cursors;
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) return cursors;
-    cursors.push_back(query.text(0));
-  }
+  return all_rows(query, &Columns::next<std::string>);
 }
 
 }  // namespace
@@ -71,13 +66,9 @@ Result<void> keep_outbox_for(Database& database, const std::vector<std::string>&
     for (const std::string& cursor : kept) {
       const std::string name = cursor.substr(kPrefix.size());
       if (std::ranges::find(destinations, name) != destinations.end()) continue;
-      int parameter = 0;
-      for (const std::string& of_it :
-           {cursor, events_cursor(name), results_cursor(name), history_cursor(name),
-            identity_cursor(name), taken_cursor(name)}) {
-        forget.bind(parameter++, std::string_view{of_it});
-      }
-      if (auto done = forget.run(); !done) return done;
+      TRY(bound(forget, cursor, events_cursor(name), results_cursor(name), history_cursor(name),
+                identity_cursor(name), taken_cursor(name))
+              .run());
     }
     return forget_told(database);
   });
@@ -92,7 +83,7 @@ Result<std::vector<OutboxEntry>> outbox_after(Database& database, std::int64_t n
       "LEFT JOIN interval AS i ON i.meter = o.meter AND i.t_start = o.t_start AND "
       "i.revision = o.revision WHERE o.number > ? ORDER BY o.number LIMIT ?",
       "t_start, i.revision, i.mean_kW, i.validity, i.late, i.reasons")));
-  query.bind(0, number).bind(1, std::int64_t{limit});
+  bound(query, number, limit);
   std::vector<OutboxEntry> entries;
   for (;;) {
     const auto row = TRY(query.step());
@@ -103,7 +94,7 @@ Result<std::vector<OutboxEntry>> outbox_after(Database& database, std::int64_t n
                       .stored = {}};
     const auto meter = static_cast<std::uint32_t>(query.integer(7));
     if (query.integer(11) != 0) {
-      entry.stored = read_interval(query, meter);
+      entry.stored = read_interval(Columns{query}, meter);
     } else if (!query.is_null(9)) {
       auto month =
           TRY(stored_month(database, meter, query.text(9), static_cast<int>(query.integer(10))));
@@ -117,8 +108,7 @@ Result<std::vector<OutboxEntry>> outbox_after(Database& database, std::int64_t n
 Result<OutboxPosition> outbox_position(Database& database, const std::string& destination) {
   auto query = TRY(database.prepare(
       fmt::format("SELECT {}, (SELECT position FROM cursor WHERE destination = ?)", kLastNumber)));
-  const std::string cursor = std::string{kPrefix} + destination;
-  TRY(query.bind(0, std::string_view{cursor}).step());
+  TRY(bound(query, std::string{kPrefix} + destination).step());
   const std::int64_t last = query.integer(0);
   return OutboxPosition{.told = query.is_null(1) ? last : query.integer(1), .last = last};
 }

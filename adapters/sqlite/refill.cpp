@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/rows.hpp"
 
 namespace recald::sqlite {
 namespace {
@@ -22,13 +22,7 @@ struct MeterRow {
 
 Result<std::vector<MeterRow>> meters_of(Database& database) {
   auto query = TRY(database.prepare("SELECT number, interval_s FROM meter ORDER BY number"));
-  std::vector<MeterRow> meters;
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) return meters;
-    meters.push_back(
-        {static_cast<std::uint32_t>(query.integer(0)), std::chrono::seconds{query.integer(1)}});
-  }
+  return all_rows(query, [](Columns columns) { return MeterRow{columns, columns}; });
 }
 
 /// Finds missing intervals, in order of time.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "adapters/sqlite/rows.hpp"
+
 namespace recald::sqlite {
 namespace {
 
@@ -33,12 +35,10 @@ Result<void> check_rows(Database& database, const RowCheck& check,
                         std::vector<std::string>& problems) {
   auto query = TRY(database.prepare(check.sql));
   std::size_t found = 0;
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) break;
-    if (++found > kListedMax) continue;
-    problems.push_back(fmt::format(fmt::runtime(check.sentence), query.text(0), query.text(1)));
-  }
+  TRY(for_each_row(query, [&](const Statement& row) {
+    if (++found > kListedMax) return;
+    problems.push_back(fmt::format(fmt::runtime(check.sentence), row.text(0), row.text(1)));
+  }));
   if (found > kListedMax) {
     problems.push_back(fmt::format("… and {} more like the last one", found - kListedMax));
   }

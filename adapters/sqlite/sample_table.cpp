@@ -1,6 +1,6 @@
 #include "adapters/sqlite/sample_table.hpp"
 
-#include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/rows.hpp"
 
 namespace recald::sqlite {
 
@@ -8,12 +8,9 @@ Result<void> for_each_sample(Database& database, std::uint32_t meter, const std:
                              const std::function<void(const metering::RegisterSample&)>& visit) {
   auto query =
       TRY(database.prepare("SELECT t, value FROM sample WHERE meter = ? AND field = ? ORDER BY t"));
-  query.bind(0, std::int64_t{meter}).bind(1, std::string_view{field});
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) return {};
-    visit({instant_of(query.integer(0)), query.real(1)});
-  }
+  return for_each_row(bound(query, meter, field), [&](const Statement& row) {
+    visit({instant_of(row.integer(0)), row.real(1)});
+  });
 }
 
 Result<int> delete_old_samples(Database& database, metering::Instant keep_from, int rows_max) {
@@ -28,18 +25,10 @@ Result<int> delete_old_samples(Database& database, metering::Instant keep_from, 
     const auto meter = TRY(meters.step());
     if (!meter || removed >= rows_max) return removed;
     const std::int64_t number = meters.integer(0);
-    const auto more = TRY(oldest_to_stay.bind(0, number)
-                              .bind(1, seconds_of(keep_from))
-                              .bind(2, std::int64_t{rows_max} - removed)
-                              .step());
+    const auto more = TRY(bound(oldest_to_stay, number, keep_from, rows_max - removed).step());
     const std::int64_t until = more ? oldest_to_stay.integer(0) : seconds_of(keep_from);
     oldest_to_stay.reset();
-    remove.bind(0, number).bind(1, until);
-    for (;;) {
-      const auto row = TRY(remove.step());
-      if (!row) break;
-      ++removed;
-    }
+    TRY(for_each_row(bound(remove, number, until), [&](const Statement&) { ++removed; }));
   }
 }
 

@@ -8,12 +8,12 @@
 #include "adapters/sqlite/backup.hpp"
 #include "adapters/sqlite/edit_table.hpp"
 #include "adapters/sqlite/forecast_table.hpp"
-#include "adapters/sqlite/interval_row.hpp"
 #include "adapters/sqlite/job_table.hpp"
 #include "adapters/sqlite/month_table.hpp"
 #include "adapters/sqlite/outbox_table.hpp"
 #include "adapters/sqlite/register_json.hpp"
 #include "adapters/sqlite/row_checks.hpp"
+#include "adapters/sqlite/rows.hpp"
 #include "adapters/sqlite/sample_table.hpp"
 #include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/tables.hpp"
@@ -25,23 +25,19 @@ using metering::MonthlyFigure;
 
 namespace {
 
-constexpr std::string_view kEventColumns = "number, t, severity, kind, subject, text, count, last";
+constexpr std::string_view kEventColumns = "t, severity, kind, subject, text, count, last, number";
 
 Result<std::vector<StoreEvent>> read_events(Statement& query) {
-  std::vector<StoreEvent> events;
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) return events;
-    events.push_back(
-        {.time = instant_of(query.integer(1)),
-         .severity = static_cast<Severity>(query.integer(2)),
-         .kind = query.text(3),
-         .subject = query.text(4),
-         .text = query.text(5),
-         .count = static_cast<int>(query.integer(6)),
-         .last = query.is_null(7) ? std::nullopt : std::optional{instant_of(query.integer(7))},
-         .number = query.integer(0)});
-  }
+  return all_rows(query, [](Columns columns) {
+    return StoreEvent{.time = columns,
+                      .severity = columns,
+                      .kind = columns,
+                      .subject = columns,
+                      .text = columns,
+                      .count = columns,
+                      .last = columns.next<std::optional<Instant>>(),
+                      .number = columns};
+  });
 }
 
 }  // namespace
@@ -65,7 +61,7 @@ Result<std::uint32_t> SqliteStore::meter_number(const std::string& id,
                                                 std::chrono::seconds interval) {
   return write([&]() -> Result<std::uint32_t> {
     auto find = TRY(database_.prepare("SELECT number, interval_s FROM meter WHERE id = ?"));
-    const auto row = TRY(find.bind(0, std::string_view{id}).step());
+    const auto row = TRY(bound(find, id).step());
     if (row) {
       if (find.integer(1) != interval.count()) {
         return failure(ErrorCode::unsupported,
@@ -80,15 +76,14 @@ Result<std::uint32_t> SqliteStore::meter_number(const std::string& id,
     const std::int64_t number = next.integer(0);
     next.reset();
     auto insert = TRY(database_.prepare(insert_into("meter", 3)));
-    insert.bind(0, number).bind(1, std::string_view{id}).bind(2, interval.count());
-    TRY(insert.run());
+    TRY(bound(insert, number, id, interval).run());
     return static_cast<std::uint32_t>(number);
   });
 }
 
 Result<std::optional<std::uint32_t>> SqliteStore::find_meter(const std::string& id) {
   auto find = TRY(database_.prepare("SELECT number FROM meter WHERE id = ?"));
-  const auto row = TRY(find.bind(0, std::string_view{id}).step());
+  const auto row = TRY(bound(find, id).step());
   if (!row) return std::optional<std::uint32_t>{};
   return std::optional{static_cast<std::uint32_t>(find.integer(0))};
 }
@@ -109,15 +104,12 @@ Result<void> SqliteStore::for_each_interval(
       fmt::format("SELECT {} FROM interval WHERE meter = ? AND t_start >= ? AND t_start < ? "
                   "ORDER BY t_start, revision",
                   kIntervalColumns)));
-  query.bind(0, std::int64_t{meter}).bind(1, seconds_of(span.begin)).bind(2, seconds_of(span.end));
   std::optional<StoredInterval> last;  // of its start; a later revision may follow
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) break;
-    const StoredInterval next = read_interval(query, meter);
+  TRY(for_each_row(bound(query, meter, span.begin, span.end), [&](const Statement& row) {
+    const StoredInterval next = read_interval(Columns{row}, meter);
     if (last && last->reading.start != next.reading.start) visit(*last);
     last = next;
-  }
+  }));
   if (last) visit(*last);
   return {};
 }
@@ -127,7 +119,7 @@ Result<std::optional<metering::TimeSpan>> SqliteStore::interval_extent(std::uint
   auto query =
       TRY(database_.prepare("SELECT (SELECT min(t_start) FROM interval WHERE meter = ?1), "
                             "(SELECT max(t_start) FROM interval WHERE meter = ?1)"));
-  const auto row = TRY(query.bind(0, std::int64_t{meter}).step());
+  const auto row = TRY(bound(query, meter).step());
   if (!row || query.is_null(0)) return std::optional<metering::TimeSpan>{};
   return std::optional{
       metering::TimeSpan{instant_of(query.integer(0)), instant_of(query.integer(1))}};
@@ -138,20 +130,14 @@ Result<bool> SqliteStore::was_read_in(const metering::TimeSpan& span) {
   auto query = TRY(database_.prepare(
       "SELECT EXISTS (SELECT 1 FROM meter CROSS JOIN interval ON interval.meter = meter.number "
       "WHERE t_start >= ? AND t_start < ? AND validity = 0)"));
-  TRY(query.bind(0, seconds_of(span.begin)).bind(1, seconds_of(span.end)).step());
+  TRY(bound(query, span.begin, span.end).step());
   return query.integer(0) != 0;
 }
 
 Result<std::vector<RegisterState>> SqliteStore::registers(std::uint32_t meter) {
   auto query = TRY(database_.prepare("SELECT state FROM register WHERE meter = ? ORDER BY field"));
-  query.bind(0, std::int64_t{meter});
-  std::vector<RegisterState> states;
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) return states;
-    auto state = TRY(register_from_json(query.text(0)));
-    states.push_back(std::move(state));
-  }
+  return all_rows(bound(query, meter),
+                  [](Columns columns) { return register_from_json(columns.next<std::string>()); });
 }
 
 Result<void> SqliteStore::for_each_sample(
@@ -199,11 +185,9 @@ Result<int> SqliteStore::delete_events(Instant keep_from, int rows_max) {
   auto remove = TRY(database_.prepare(
       "DELETE FROM event WHERE number IN (SELECT number FROM event WHERE t < ?1 AND "
       "coalesce(last, t) < ?1 ORDER BY t LIMIT ?2) RETURNING 1"));
-  remove.bind(0, seconds_of(keep_from)).bind(1, std::int64_t{rows_max});
-  for (int removed = 0;; ++removed) {
-    const auto row = TRY(remove.step());
-    if (!row) return removed;
-  }
+  int removed = 0;
+  TRY(for_each_row(bound(remove, keep_from, rows_max), [&](const Statement&) { ++removed; }));
+  return removed;
 }
 
 Result<std::optional<StoredJob>> SqliteStore::oldest_job_beyond(JobKind kind, int kept) {
@@ -215,27 +199,25 @@ Result<void> SqliteStore::delete_job(std::int64_t number) { return remove_job(da
 Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
   auto query = TRY(database_.prepare(
       fmt::format("SELECT {} FROM event ORDER BY t DESC, number DESC LIMIT ?", kEventColumns)));
-  query.bind(0, std::int64_t{limit});
-  return read_events(query);
+  return read_events(bound(query, limit));
 }
 
 Result<std::vector<StoreEvent>> SqliteStore::events_after(std::int64_t number, int limit) {
   auto query = TRY(database_.prepare(
       fmt::format("SELECT {} FROM event WHERE number > ? ORDER BY number LIMIT ?", kEventColumns)));
-  query.bind(0, number).bind(1, std::int64_t{limit});
-  return read_events(query);
+  return read_events(bound(query, number, limit));
 }
 
 Result<std::optional<std::int64_t>> SqliteStore::cursor(const std::string& destination) {
   auto query = TRY(database_.prepare("SELECT position FROM cursor WHERE destination = ?"));
-  const auto row = TRY(query.bind(0, std::string_view{destination}).step());
+  const auto row = TRY(bound(query, destination).step());
   return row ? std::optional{query.integer(0)} : std::nullopt;
 }
 
 Result<void> SqliteStore::put_cursor(const std::string& destination, std::int64_t position) {
   return write([&]() -> Result<void> {
     auto put = TRY(database_.prepare(insert_into("cursor", 2, "INSERT OR REPLACE")));
-    return put.bind(0, std::string_view{destination}).bind(1, position).run();
+    return bound(put, destination, position).run();
   });
 }
 

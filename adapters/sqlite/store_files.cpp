@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/rows.hpp"
 
 namespace recald::sqlite {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "adapters/sqlite/interval_row.hpp"
+#include "adapters/sqlite/rows.hpp"
 #include "adapters/sqlite/schema.hpp"
 
 namespace recald::sqlite {
@@ -30,14 +30,12 @@ Result<StoreSummary> summary_of(Database& database) {
   auto query = TRY(database.prepare(
       "SELECT id, (SELECT max(t_start) FROM interval WHERE meter = number) FROM meter "
       "ORDER BY number"));
-  for (;;) {
-    const auto row = TRY(query.step());
-    if (!row) return summary;
-    summary.meters.push_back(query.text(0));
-    if (query.is_null(1)) continue;
-    const metering::Instant newest = instant_of(query.integer(1));
-    if (!summary.newest || newest > *summary.newest) summary.newest = newest;
-  }
+  TRY(for_each_row(query, [&](const Statement& row) {
+    Columns columns{row};
+    summary.meters.push_back(columns);
+    summary.newest = std::max(summary.newest, columns.next<std::optional<metering::Instant>>());
+  }));
+  return summary;
 }
 
 }  // namespace recald::sqlite
