@@ -35,9 +35,30 @@ constexpr const char* kDesigns = "Work with simulation runs";
 constexpr const char* kFleet = "Many buildings";
 constexpr const char* kShell = "Help";
 
+template <class Given>
+CLI::Option* add_json(CLI::App& command, Given& given) {
+  return command.add_flag("--json", given.json, "Print the result as one JSON object");
+}
+
 void add_site(CLI::App& command, SiteArguments& arguments) {
   command.add_option("site", arguments.site, "Site file (TOML)")->required();
-  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+  add_json(command, arguments);
+}
+
+template <class Given>
+void add_seed(CLI::App& command, Given& given) {
+  command.add_option("--seed", given.seed, "Seed of all random numbers")->capture_default_str();
+}
+
+template <class Given>
+CLI::Option* add_threads(CLI::App& command, Given& given) {
+  return command.add_option("--threads", given.threads, "Number of threads; 0 for one per core");
+}
+
+template <class Given>
+void add_chance(CLI::App& command, Given& given) {
+  add_seed(command, given);
+  add_threads(command, given);
 }
 
 /// @param of_building_alone  Kinds that need no design.
@@ -73,15 +94,14 @@ void add_sampling(CLI::App& command, SamplingArguments& arguments) {
   command.add_option("--chains", arguments.chains, "Number of chains")
       ->check(CLI::Range(2, 64))
       ->capture_default_str();
-  command.add_option("--seed", arguments.seed, "Seed of all random numbers")->capture_default_str();
-  command.add_option("--threads", arguments.threads, "Number of threads; 0 for one per core")
-      ->capture_default_str();
+  add_seed(command, arguments);
+  add_threads(command, arguments)->capture_default_str();
   command.add_flag("--prior-sensitivity", arguments.prior_sensitivity,
                    "Calibrate twice more, with wider and narrower priors of the discrepancy");
 }
 
 void add_calibration(CLI::App& command, CalibrateArguments& arguments) {
-  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+  add_json(command, arguments);
   command
       .add_option("--design-runs", arguments.design_runs,
                   "Model runs of the design (Latin hypercube)")
@@ -165,8 +185,8 @@ void add_screen(CLI::App& command, ScreenArguments& arguments) {
   command.add_option("--doe", arguments.design.folder, "Design folder")->required();
   add_design(command, arguments.design);
   command.add_option("--out", arguments.out, "Folder for the result");
-  command.add_option("--seed", arguments.seed, "Seed of all random numbers")->capture_default_str();
-  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+  add_seed(command, arguments);
+  add_json(command, arguments);
 }
 
 void add_doe(CLI::App& command, DoeArguments& arguments) {
@@ -178,9 +198,8 @@ void add_doe(CLI::App& command, DoeArguments& arguments) {
       "--out", arguments.out,
       "Design folder; an unfinished design is continued. An EnergyPlus model has one "
       "of its own");
-  command.add_option("--seed", arguments.seed, "Seed of all random numbers")->capture_default_str();
-  command.add_option("--threads", arguments.threads, "Number of threads; 0 for one per core")
-      ->capture_default_str();
+  add_seed(command, arguments);
+  add_threads(command, arguments)->capture_default_str();
   CLI::Option* priors =
       command.add_flag("--priors", arguments.from_priors,
                        "Draw all runs from the priors, to check a meta-model with metamodel "
@@ -214,6 +233,16 @@ std::string misuse_of(const CalibrateArguments& arguments) {
   return "";
 }
 
+std::string misuse_of(const StatusArguments& arguments) {
+  const bool names_one = !arguments.site.empty() || !arguments.url.empty();
+  return names_one ? "" : "status needs a site file or --url";
+}
+
+std::string misuse_of(const WorkerArguments& arguments) {
+  const bool has_work = !arguments.fleet.empty() || !arguments.job_folder.empty();
+  return has_work ? "" : "worker needs the file of a fleet";
+}
+
 void add_decode(CLI::App& command, DecodeArguments& arguments) {
   command.add_option("--map", arguments.map, "Register map: a shipped one, or a .toml file")
       ->required();
@@ -223,7 +252,7 @@ void add_decode(CLI::App& command, DecodeArguments& arguments) {
   command.add_option("--at", arguments.at, "Address of its first register on the wire, base 0");
   command.add_option("--as", arguments.as, "What --hex is, if recald guesses wrong")
       ->check(one_of({"tcp", "rtu", "registers"}));
-  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+  add_json(command, arguments);
 }
 
 void add_status(CLI::App& command, StatusArguments& arguments) {
@@ -232,7 +261,7 @@ void add_status(CLI::App& command, StatusArguments& arguments) {
                                         "Address of the daemon, such as http://127.0.0.1:8080");
   command.add_option("--token-file", arguments.token_file, "File with the access token")
       ->needs(url);
-  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+  add_json(command, arguments);
   site->excludes(url);
 }
 
@@ -240,9 +269,7 @@ void add_registers(CLI::App& command, RegistersArguments& arguments) {
   CLI::Option* site =
       command.add_option("site", arguments.site, "Site file (TOML); without one, any site's map");
   CLI::Option* csv = command.add_flag("--csv", arguments.csv, "Print one register a line, as CSV");
-  command.add_flag("--json", arguments.json, "Print the result as one JSON object")
-      ->needs(site)
-      ->excludes(csv);
+  add_json(command, arguments)->needs(site)->excludes(csv);
   csv->needs(site);
 }
 
@@ -283,46 +310,65 @@ void add_restore(CLI::App& command, RestoreArguments& arguments) {
       ->excludes(list);
 }
 
-/// What every command was given on the command line; only one of them is run.
-struct Arguments {
-  InitArguments init;
-  CheckArguments check;
-  ScanArguments scan;
-  RunArguments run;
-  DecodeArguments decode;
-  ReplayArguments replay;
-  ProfileArguments profile;
-  SiteArguments doctor;
-  SiteArguments verify;
-  ExportArguments exported;
-  ImportArguments imported;
-  RestoreArguments restore;
-  CalibrateArguments calibrate;
-  ReportArguments report;
-  ScreenArguments screen;
-  MetamodelArguments metamodel;
-  DoeArguments doe;
-  EngineArguments engine;
-  DiagnoseArguments diagnose;
-  EffectsArguments effects;
-  DriftArguments drift;
-  EcmArguments ecm;
-  DetectabilityArguments detectability;
-  StatusArguments status;
-  RegistersArguments registers;
-  ModelArguments model;
-  WorkerArguments worker;
-  FleetArguments fleet;
-  FleetAddArguments fleet_sites;
-  FleetRerunArguments rerun;
-  FleetPriorsArguments fleet_priors;
-  std::vector<std::string> command;
-  std::string shell;
-};
-
 struct Verb {
   CLI::App* command;
   std::function<int(const Console&)> run;
+};
+
+/// What was given to a command, by type of its arguments; only one command is run.
+template <class Given>
+struct Command {
+  CLI::App& app;
+  Given& given;
+};
+
+class Verbs {
+ public:
+  explicit Verbs(CLI::App& app) : app_(&app) {}
+
+  /// @param group   Heading of the help that it stands under.
+  /// @param run     Called with what was given, unless `misuse` says why that makes no sense.
+  template <class Given>
+  Command<Given> add(const char* group, const char* name, const char* text,
+                     int (*run)(const Given&, const Console&),
+                     std::string (*misuse)(const Given&) = nullptr) {
+    Command<Given> command = add_to(*app_, name, text, run, misuse);
+    command.app.group(group);
+    return command;
+  }
+  /// A command that has commands of its own.
+  CLI::App& add_family(const char* group, const char* name, const char* text) {
+    return *app_->add_subcommand(name, text)->group(group)->require_subcommand(1);
+  }
+  template <class Given>
+  Command<Given> add_to(CLI::App& family, const char* name, const char* text,
+                        int (*run)(const Given&, const Console&),
+                        std::string (*misuse)(const Given&) = nullptr) {
+    CLI::App* command = family.add_subcommand(name, text);
+    const auto given = std::make_shared<Given>();
+    all_.push_back({command, [given, run, misuse](const Console& console) {
+                      const std::string why = misuse == nullptr ? "" : misuse(*given);
+                      return why.empty() ? run(*given, console) : console.misused(why);
+                    }});
+    return {*command, *given};
+  }
+  /// A command of the command line itself.
+  CLI::App& add(const char* group, const char* name, const char* text,
+                std::function<int(const Console&)> run) {
+    CLI::App* command = app_->add_subcommand(name, text)->group(group);
+    all_.push_back({command, std::move(run)});
+    return *command;
+  }
+
+  [[nodiscard]] int run_parsed(const Console& console) const {
+    const auto parsed =
+        std::ranges::find_if(all_, [](const Verb& one) { return one.command->parsed(); });
+    return parsed->run(console);  // CLI11 has required a command
+  }
+
+ private:
+  CLI::App* app_;
+  std::vector<Verb> all_;
 };
 
 void add_init(CLI::App& command, InitArguments& arguments) {
@@ -350,391 +396,306 @@ void add_init(CLI::App& command, InitArguments& arguments) {
   command.add_option("--built", starter.built, "Year of construction")->needs(use);
   command.add_flag("--yes", arguments.asks_nothing,
                    "Accepted for scripts; recald init asks nothing");
-  command.add_flag("--json", arguments.json, "Print the result as one JSON object");
+  add_json(command, arguments);
   show_first(command, {"--out", "--timezone", "--epw", "--use", "--area", "--storeys", "--built"});
 }
 
-void add_site_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* init =
-      app.add_subcommand("init", "Look at exports of meters and write a site file")->group(kSetUp);
-  add_init(*init, given.init);
-  verbs.push_back({init, [&](const Console& console) { return run_init(given.init, console); }});
+void add_site_verbs(Verbs& verbs) {
+  const auto init =
+      verbs.add(kSetUp, "init", "Look at exports of meters and write a site file", run_init);
+  add_init(init.app, init.given);
 
-  CLI::App* check =
-      app.add_subcommand("check", "Check a site file and say what is wrong with it")->group(kSetUp);
-  add_site(*check, given.check);
-  check->add_flag("--meters", given.check.meters, "Also read each live meter once");
-  check->add_flag("--alerts", given.check.alerts, "Also send a trial message to all of [alerts]");
-  verbs.push_back({check, [&](const Console& console) { return run_check(given.check, console); }});
+  const auto [check, checked] =
+      verbs.add(kSetUp, "check", "Check a site file and say what is wrong with it", run_check);
+  add_site(check, checked);
+  check.add_flag("--meters", checked.meters, "Also read each live meter once");
+  check.add_flag("--alerts", checked.alerts, "Also send a trial message to all of [alerts]");
 
-  CLI::App* run = app.add_subcommand("run", "Poll the meters until stopped")->group(kRun);
-  run->add_option("site", given.run.site, "Site file (TOML)")->required();
-  run->add_option("--clock", given.run.clock,
-                  "For trials with simulated meters: START@ANCHORxSPEED, such as "
-                  "2026-01-30T00:00:00Z@1769900000x600");
-  verbs.push_back({run, [&](const Console& console) { return run_run(given.run, console); }});
+  const auto [run, of_run] = verbs.add(kRun, "run", "Poll the meters until stopped", run_run);
+  run.add_option("site", of_run.site, "Site file (TOML)")->required();
+  run.add_option("--clock", of_run.clock,
+                 "For trials with simulated meters: START@ANCHORxSPEED, such as "
+                 "2026-01-30T00:00:00Z@1769900000x600");
 
-  CLI::App* status =
-      app.add_subcommand("status", "Show what a running daemon is doing")->group(kRun);
-  add_status(*status, given.status);
-  verbs.push_back({status, [&](const Console& console) {
-                     const bool names_one = !given.status.site.empty() || !given.status.url.empty();
-                     return names_one ? run_status(given.status, console)
-                                      : console.misused("status needs a site file or --url");
-                   }});
+  const auto status =
+      verbs.add(kRun, "status", "Show what a running daemon is doing", run_status, misuse_of);
+  add_status(status.app, status.given);
 
-  CLI::App* doctor =
-      app.add_subcommand(
-             "doctor",
-             "Check the installation, and collect what a bug report needs, without secrets")
-          ->group(kRun);
-  doctor->add_option("site", given.doctor.site, "Site file (TOML); the machine alone without one");
-  doctor->add_flag("--json", given.doctor.json, "Print the result as one JSON object");
-  verbs.push_back(
-      {doctor, [&](const Console& console) { return run_doctor(given.doctor, console); }});
-  CLI::App* registers =
-      app.add_subcommand("registers", "List the Modbus registers that the daemon serves")
-          ->group(kRun);
-  add_registers(*registers, given.registers);
-  verbs.push_back(
-      {registers, [&](const Console& console) { return run_registers(given.registers, console); }});
+  const auto [doctor, examined] = verbs.add(
+      kRun, "doctor",
+      "Check the installation, and collect what a bug report needs, without secrets", run_doctor);
+  doctor.add_option("site", examined.site, "Site file (TOML); the machine alone without one");
+  add_json(doctor, examined);
 
-  CLI::App* replay =
-      app.add_subcommand("replay", "Turn recorded readings into monthly figures")->group(kData);
-  add_site(*replay, given.replay);
-  replay->add_option("--from", given.replay.from, "First local day, YYYY-MM-DD");
-  replay->add_option("--to", given.replay.to, "Last local day, YYYY-MM-DD");
-  replay->add_option("--out", given.replay.out, "Folder for months.csv and the page of the meters");
-  verbs.push_back(
-      {replay, [&](const Console& console) { return run_replay(given.replay, console); }});
+  const auto registers = verbs.add(
+      kRun, "registers", "List the Modbus registers that the daemon serves", run_registers);
+  add_registers(registers.app, registers.given);
 
-  CLI::App* profile =
-      app.add_subcommand("profile", "Read lighting and plug schedules off the electricity meter")
-          ->group(kData);
-  add_site(*profile, given.profile);
-  profile->add_option("--out", given.profile.out, "Folder for profile.json");
-  verbs.push_back(
-      {profile, [&](const Console& console) { return run_profile(given.profile, console); }});
+  const auto [replay, replayed] =
+      verbs.add(kData, "replay", "Turn recorded readings into monthly figures", run_replay);
+  add_site(replay, replayed);
+  replay.add_option("--from", replayed.from, "First local day, YYYY-MM-DD");
+  replay.add_option("--to", replayed.to, "Last local day, YYYY-MM-DD");
+  replay.add_option("--out", replayed.out, "Folder for months.csv and the page of the meters");
+
+  const auto [profile, profiled] = verbs.add(
+      kData, "profile", "Read lighting and plug schedules off the electricity meter", run_profile);
+  add_site(profile, profiled);
+  profile.add_option("--out", profiled.out, "Folder for profile.json");
 }
 
-void add_store_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* verify = app.add_subcommand("verify", "Check the store for damage")->group(kData);
-  add_site(*verify, given.verify);
-  verbs.push_back(
-      {verify, [&](const Console& console) { return run_verify(given.verify, console); }});
-
-  CLI::App* exported =
-      app.add_subcommand("export", "Write the store's readings or months as CSV")->group(kData);
-  add_export(*exported, given.exported);
-  verbs.push_back(
-      {exported, [&](const Console& console) { return run_export(given.exported, console); }});
-
-  CLI::App* imported =
-      app.add_subcommand("import", "Put readings into the store, with a reason")->group(kData);
-  add_import(*imported, given.imported);
-  verbs.push_back(
-      {imported, [&](const Console& console) { return run_import(given.imported, console); }});
-
-  CLI::App* restore =
-      app.add_subcommand("restore", "Put a backup of the store back into place")->group(kRun);
-  add_restore(*restore, given.restore);
-  verbs.push_back(
-      {restore, [&](const Console& console) { return run_restore(given.restore, console); }});
+void add_store_verbs(Verbs& verbs) {
+  const auto verify = verbs.add(kData, "verify", "Check the store for damage", run_verify);
+  add_site(verify.app, verify.given);
+  const auto exported =
+      verbs.add(kData, "export", "Write the store's readings or months as CSV", run_export);
+  add_export(exported.app, exported.given);
+  const auto imported =
+      verbs.add(kData, "import", "Put readings into the store, with a reason", run_import);
+  add_import(imported.app, imported.given);
+  const auto restore =
+      verbs.add(kRun, "restore", "Put a backup of the store back into place", run_restore);
+  add_restore(restore.app, restore.given);
 }
 
-void add_device_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* scan =
-      app.add_subcommand("scan", "List the devices that answer on a Modbus bus")->group(kSetUp);
-  add_site(*scan, given.scan);
-  scan->add_option("--bus", given.scan.bus, "Name of the [bus.NAME] to scan")->required();
-  scan->add_option("--units", given.scan.units, "Modbus addresses, A-B or one")
+void add_device_verbs(Verbs& verbs) {
+  const auto [scan, scanned] =
+      verbs.add(kSetUp, "scan", "List the devices that answer on a Modbus bus", run_scan);
+  add_site(scan, scanned);
+  scan.add_option("--bus", scanned.bus, "Name of the [bus.NAME] to scan")->required();
+  scan.add_option("--units", scanned.units, "Modbus addresses, A-B or one")->capture_default_str();
+  const auto decode =
+      verbs.add(kSetUp, "decode", "Explain a Modbus frame byte by byte", run_decode);
+  add_decode(decode.app, decode.given);
+}
+
+void add_calibration_verbs(Verbs& verbs) {
+  const auto calibrate = verbs.add(
+      kCalibrate, "calibrate", "Calibrate the site's model, or forecast its meters if it has none",
+      run_calibrate, misuse_of);
+  add_calibrate(calibrate.app, calibrate.given);
+  const auto report = verbs.add(
+      kCalibrate, "report",
+      "Write the page of a site or of exports: meters, and a calibration where there is a model",
+      run_report);
+  add_report(report.app, report.given);
+}
+
+void add_design_verbs(Verbs& verbs) {
+  const auto doe =
+      verbs.add(kDesigns, "doe", "Run the site's model over a design of its parameters", run_doe);
+  add_doe(doe.app, doe.given);
+  const auto screen =
+      verbs.add(kDesigns, "screen", "Find which parameters of a design matter", run_screen);
+  add_screen(screen.app, screen.given);
+  const auto [metamodel, given] =
+      verbs.add(kDesigns, "metamodel", "Fit a meta-model to the runs of a design", run_metamodel);
+  add_screen(metamodel, given);
+  add_form(metamodel, given.design);
+  metamodel.add_option("--check", given.check,
+                       "Another design of the same model, such as corners, to be predicted");
+  metamodel.add_option("--parameters", given.parameters, "all, or names separated by commas")
       ->capture_default_str();
-  verbs.push_back({scan, [&](const Console& console) { return run_scan(given.scan, console); }});
-
-  CLI::App* decode =
-      app.add_subcommand("decode", "Explain a Modbus frame byte by byte")->group(kSetUp);
-  add_decode(*decode, given.decode);
-  verbs.push_back(
-      {decode, [&](const Console& console) { return run_decode(given.decode, console); }});
+  show_first(metamodel, {"--doe", "--check", "--parameters", "--out", "--json"});
 }
 
-void add_calibration_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* calibrate =
-      app.add_subcommand("calibrate",
-                         "Calibrate the site's model, or forecast its meters if it has none")
-          ->group(kCalibrate);
-  add_calibrate(*calibrate, given.calibrate);
-  verbs.push_back({calibrate, [&](const Console& console) {
-                     const std::string why = misuse_of(given.calibrate);
-                     return why.empty() ? run_calibrate(given.calibrate, console)
-                                        : console.misused(why);
-                   }});
-
-  CLI::App* report =
-      app.add_subcommand("report",
-                         "Write the page of a site or of exports: meters, and a calibration where "
-                         "there is a model")
-          ->group(kCalibrate);
-  add_report(*report, given.report);
-  verbs.push_back(
-      {report, [&](const Console& console) { return run_report(given.report, console); }});
-}
-
-void add_design_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* doe = app.add_subcommand("doe", "Run the site's model over a design of its parameters")
-                      ->group(kDesigns);
-  add_doe(*doe, given.doe);
-  verbs.push_back({doe, [&](const Console& console) { return run_doe(given.doe, console); }});
-
-  CLI::App* screen =
-      app.add_subcommand("screen", "Find which parameters of a design matter")->group(kDesigns);
-  add_screen(*screen, given.screen);
-  verbs.push_back(
-      {screen, [&](const Console& console) { return run_screen(given.screen, console); }});
-
-  CLI::App* metamodel =
-      app.add_subcommand("metamodel", "Fit a meta-model to the runs of a design")->group(kDesigns);
-  add_screen(*metamodel, given.metamodel);
-  add_form(*metamodel, given.metamodel.design);
-  metamodel->add_option("--check", given.metamodel.check,
-                        "Another design of the same model, such as corners, to be predicted");
-  metamodel
-      ->add_option("--parameters", given.metamodel.parameters, "all, or names separated by commas")
-      ->capture_default_str();
-  show_first(*metamodel, {"--doe", "--check", "--parameters", "--out", "--json"});
-  verbs.push_back(
-      {metamodel, [&](const Console& console) { return run_metamodel(given.metamodel, console); }});
-}
-
-void add_drift_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* drift =
-      app.add_subcommand("drift",
-                         "Forecast each month from the months before it and say what changed")
-          ->group(kCalibrate);
-  add_site(*drift, given.drift);
-  drift->add_option("--out", given.drift.out, "Folder for drift.json and the page drift.html");
-  add_model(*drift, given.drift.model, "epc or hourly; else as the site file says", true);
-  drift->add_option("--learn", given.drift.learning_months, "Months to learn from")
+void add_drift_verb(Verbs& verbs) {
+  const auto [drift, given] =
+      verbs.add(kCalibrate, "drift",
+                "Forecast each month from the months before it and say what changed", run_drift);
+  add_site(drift, given);
+  drift.add_option("--out", given.out, "Folder for drift.json and the page drift.html");
+  add_model(drift, given.model, "epc or hourly; else as the site file says", true);
+  drift.add_option("--learn", given.learning_months, "Months to learn from")
       ->check(CLI::Range(6, 60))
       ->capture_default_str();
   drift
-      ->add_option("--anew-every", given.drift.anew_every_months,
-                   "Sample the posterior from scratch every so many months")
+      .add_option("--anew-every", given.anew_every_months,
+                  "Sample the posterior from scratch every so many months")
       ->check(CLI::Range(1, 120))
       ->capture_default_str();
-  drift->add_option("--particles", given.drift.particles, "Number of particles")
+  drift.add_option("--particles", given.particles, "Number of particles")
       ->check(CLI::Range(64, 100'000))
       ->capture_default_str();
-  drift->add_option("--seed", given.drift.seed, "Seed of all random numbers")
-      ->capture_default_str();
-  drift->add_option("--threads", given.drift.threads, "Number of threads; 0 for one per core");
-  show_first(*drift, {"--model", "--learn", "--out", "--seed", "--json"});
-  verbs.push_back({drift, [&](const Console& console) { return run_drift(given.drift, console); }});
+  add_chance(drift, given);
+  show_first(drift, {"--model", "--learn", "--out", "--seed", "--json"});
 }
 
-void add_ecm_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* ecm =
-      app.add_subcommand("ecm", "Say what measures would save, or what was saved since a date")
-          ->group(kCalibrate);
-  add_site(*ecm, given.ecm);
+void add_ecm_verb(Verbs& verbs) {
+  const auto [ecm, given] = verbs.add(
+      kCalibrate, "ecm", "Say what measures would save, or what was saved since a date", run_ecm);
+  add_site(ecm, given);
   CLI::Option* measure =
-      ecm->add_option("--measure", given.ecm.measure, "What measures change and cost (TOML)")
+      ecm.add_option("--measure", given.measure, "What measures change and cost (TOML)")
           ->option_text("FILE");
-  ecm->add_option("--since", given.ecm.since,
-                  "What was saved since this local day, YYYY-MM-DD, by regression and by model")
+  ecm.add_option("--since", given.since,
+                 "What was saved since this local day, YYYY-MM-DD, by regression and by model")
       ->excludes(measure);
-  ecm->add_option("--out", given.ecm.out,
-                  "Folder for ecm.json, savings.csv and the page savings.html");
-  add_model(*ecm, given.ecm.model, "epc, hourly or energyplus; else as the site file says", false);
-  ecm->add_option("--seed", given.ecm.seed, "Seed of all random numbers")->capture_default_str();
-  ecm->add_option("--threads", given.ecm.threads, "Number of threads; 0 for one per core");
-  show_first(*ecm, {"--measure", "--since", "--model", "--out", "--json"});
-  verbs.push_back({ecm, [&](const Console& console) { return run_ecm(given.ecm, console); }});
+  ecm.add_option("--out", given.out, "Folder for ecm.json, savings.csv and the page savings.html");
+  add_model(ecm, given.model, "epc, hourly or energyplus; else as the site file says", false);
+  add_chance(ecm, given);
+  show_first(ecm, {"--measure", "--since", "--model", "--out", "--json"});
 }
 
-void add_model_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* diagnose =
-      app.add_subcommand("diagnose", "Look for the likely cause where model and meters disagree")
-          ->group(kFind);
-  add_site(*diagnose, given.diagnose);
-  diagnose->add_option("--out", given.diagnose.out, "Folder for diagnosis.html and diagnosis.json");
-  diagnose->add_option("--seed", given.diagnose.seed, "Seed of all random numbers")
-      ->capture_default_str();
-  diagnose->add_option("--threads", given.diagnose.threads,
-                       "Number of threads; 0 for one per core");
-  diagnose->add_flag("--apply", given.diagnose.apply, "Add the effect that is named to the model");
-  diagnose->add_option("--assume", given.diagnose.assumed,
-                       "Add only this effect, EFFECT or EFFECT:METER, which is known to be there");
-  verbs.push_back(
-      {diagnose, [&](const Console& console) { return run_diagnose(given.diagnose, console); }});
+void add_finding_verbs(Verbs& verbs) {
+  const auto [diagnose, given] = verbs.add(
+      kFind, "diagnose", "Look for the likely cause where model and meters disagree", run_diagnose);
+  add_site(diagnose, given);
+  diagnose.add_option("--out", given.out, "Folder for diagnosis.html and diagnosis.json");
+  add_chance(diagnose, given);
+  diagnose.add_flag("--apply", given.apply, "Add the effect that is named to the model");
+  diagnose.add_option("--assume", given.assumed,
+                      "Add only this effect, EFFECT or EFFECT:METER, which is known to be there");
 
-  CLI::App* effects =
-      app.add_subcommand("effects", "List the effects that diagnose knows, or explain one")
-          ->group(kFind);
-  effects->add_option("name", given.effects.name, "Effect to explain; without one, all are listed");
-  effects->add_flag("--json", given.effects.json, "Print the result as one JSON object");
-  verbs.push_back(
-      {effects, [&](const Console& console) { return run_effects(given.effects, console); }});
+  const auto [effects, named] = verbs.add(
+      kFind, "effects", "List the effects that diagnose knows, or explain one", run_effects);
+  effects.add_option("name", named.name, "Effect to explain; without one, all are listed");
+  add_json(effects, named);
 
-  CLI::App* detectability =
-      app.add_subcommand("detectability", "Estimate how visible an effect would be at a site")
-          ->group(kFind);
-  add_site(*detectability, given.detectability);
+  const auto [detectability, seen] =
+      verbs.add(kFind, "detectability", "Estimate how visible an effect would be at a site",
+                run_detectability);
+  add_site(detectability, seen);
   detectability
-      ->add_option("--footprint", given.detectability.footprint,
-                   "What the effect adds to the meters: timestamp,meter,value,unit")
+      .add_option("--footprint", seen.footprint,
+                  "What the effect adds to the meters: timestamp,meter,value,unit")
       ->required();
-  detectability->add_option("--out", given.detectability.out, "Folder for detectability.json");
-  verbs.push_back({detectability, [&](const Console& console) {
-                     return run_detectability(given.detectability, console);
-                   }});
-
-  CLI::App* model =
-      app.add_subcommand("model", "List the versions of the site's model, or change to one")
-          ->group(kFind);
-  model->require_subcommand(1);
-  const auto add = [&](const char* name, const char* help, auto run) {
-    CLI::App* command = model->add_subcommand(name, help);
-    add_site(*command, given.model);
-    verbs.push_back(
-        {command, [&given, run](const Console& console) { return run(given.model, console); }});
-    return command;
-  };
-  add("list", "List all versions and mark the one in use", run_model_list);
-  add("show", "Show one version and why it was accepted", run_model_show)
-      ->add_option("version", given.model.version, "Version; the one in use by default");
-  add("apply", "Put a version in force that a diagnosis proposed", run_model_apply)
-      ->add_option("version", given.model.version, "Version, or its first digits")
-      ->required();
-  add("revert", "Go back to an earlier version", run_model_revert)
-      ->add_option("version", given.model.version, "Version; the one before by default");
+  detectability.add_option("--out", seen.out, "Folder for detectability.json");
 }
 
-void add_engine_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* engine =
-      app.add_subcommand("engine", "Look into the EnergyPlus model of a site")->group(kDesigns);
-  engine->require_subcommand(1);
-  CLI::App* show = engine->add_subcommand(
-      "show", "List what the model reports and what in it could be varied, as lines to paste");
-  add_site(*show, given.engine);
-  verbs.push_back(
-      {show, [&](const Console& console) { return run_engine_show(given.engine, console); }});
+void add_model_verbs(Verbs& verbs) {
+  CLI::App& model =
+      verbs.add_family(kFind, "model", "List the versions of the site's model, or change to one");
+  const auto add = [&](const char* name, const char* help, auto run, const char* version) {
+    const auto [command, given] = verbs.add_to(model, name, help, run);
+    add_site(command, given);
+    return version == nullptr ? nullptr : command.add_option("version", given.version, version);
+  };
+  add("list", "List all versions and mark the one in use", run_model_list, nullptr);
+  add("show", "Show one version and why it was accepted", run_model_show,
+      "Version; the one in use by default");
+  add("apply", "Put a version in force that a diagnosis proposed", run_model_apply,
+      "Version, or its first digits")
+      ->required();
+  add("revert", "Go back to an earlier version", run_model_revert,
+      "Version; the one before by default");
+}
+
+void add_engine_verbs(Verbs& verbs) {
+  CLI::App& engine =
+      verbs.add_family(kDesigns, "engine", "Look into the EnergyPlus model of a site");
+  const auto show =
+      verbs.add_to(engine, "show",
+                   "List what the model reports and what in it could be varied, as lines to paste",
+                   run_engine_show);
+  add_site(show.app, show.given);
 }
 
 CLI::Option* add_fleet(CLI::App& command, FleetArguments& arguments) {
   return command.add_option("fleet", arguments.fleet, "File of the fleet (TOML)")->required();
 }
 
-void add_worker_verb(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* worker =
-      app.add_subcommand("worker", "Take readings of gateways in, and calibrate their sites")
-          ->group(kFleet);
-  CLI::Option* fleet = add_fleet(*worker, given.worker);
-  worker->add_option("--jobs", given.worker.jobs, "Jobs at the same time, instead of the file's")
+void add_worker_verb(Verbs& verbs) {
+  const auto [worker, given] =
+      verbs.add(kFleet, "worker", "Take readings of gateways in, and calibrate their sites",
+                run_worker, misuse_of);
+  CLI::Option* fleet = add_fleet(worker, given);
+  worker.add_option("--jobs", given.jobs, "Jobs at the same time, instead of the file's")
       ->check(CLI::Range(0, 64));
-  worker->add_flag("--until-idle", given.worker.until_idle, "End when no job is left");
+  worker.add_flag("--until-idle", given.until_idle, "End when no job is left");
   // How a worker starts the process of one job.
-  worker->add_option("--do", given.worker.job_folder, "Do the job in this folder")
+  worker.add_option("--do", given.job_folder, "Do the job in this folder")
       ->group("")
       ->excludes(fleet);
   fleet->required(false);
-  verbs.push_back({worker, [&](const Console& console) {
-                     if (given.worker.fleet.empty() && given.worker.job_folder.empty()) {
-                       return console.misused("worker needs the file of a fleet");
-                     }
-                     return run_worker(given.worker, console);
-                   }});
 }
 
-void add_fleet_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* fleet =
-      app.add_subcommand("fleet", "The record of many sites, in PostgreSQL")->group(kFleet);
-  fleet->require_subcommand(1);
-  CLI::App* init = fleet->add_subcommand("init", "Make the record's tables, or update them");
-  add_fleet(*init, given.fleet);
-  verbs.push_back(
-      {init, [&](const Console& console) { return run_fleet_init(given.fleet, console); }});
-  CLI::App* add = fleet->add_subcommand("add", "Register sites, or new versions of their files");
-  add_fleet(*add, given.fleet_sites);
-  add->add_option("sites", given.fleet_sites.sites, "Site files (TOML)")->required();
-  add->add_option("--use", given.fleet_sites.use, "What they are used for, to compare them");
-  add->add_option("--climate", given.fleet_sites.climate, "Their climate, to compare them");
-  add->add_option("--calibrate-from", given.fleet_sites.calibrate_from,
-                  "First month to calibrate, YYYY-MM; the last month by default");
-  verbs.push_back(
-      {add, [&](const Console& console) { return run_fleet_add(given.fleet_sites, console); }});
-  CLI::App* remove = fleet->add_subcommand("remove", "Stop accepting data from sites");
-  add_fleet(*remove, given.fleet_sites);
-  remove->add_option("sites", given.fleet_sites.sites, "Ids of sites")->required();
-  verbs.push_back({remove, [&](const Console& console) {
-                     return run_fleet_remove(given.fleet_sites, console);
-                   }});
-  CLI::App* status = fleet->add_subcommand("status", "List sites, jobs and what went wrong");
-  add_fleet(*status, given.fleet);
-  status->add_flag("--json", given.fleet.json, "Print the result as one JSON object");
-  verbs.push_back(
-      {status, [&](const Console& console) { return run_fleet_status(given.fleet, console); }});
-  CLI::App* serve = fleet->add_subcommand("serve", "Serve the pages of all sites over HTTP");
-  add_fleet(*serve, given.fleet);
-  verbs.push_back(
-      {serve, [&](const Console& console) { return run_fleet_serve(given.fleet, console); }});
-  CLI::App* priors = fleet->add_subcommand(
-      "priors", "Print what other sites of the same use teach one, as lines of its site file");
-  add_fleet(*priors, given.fleet_priors);
-  priors->add_option("site", given.fleet_priors.site, "Id of the site")->required();
-  verbs.push_back({priors, [&](const Console& console) {
-                     return run_fleet_priors(given.fleet_priors, console);
-                   }});
-  CLI::App* rerun = fleet->add_subcommand("rerun", "List jobs to run again, and let them run");
-  add_fleet(*rerun, given.rerun);
-  rerun->add_option("sites", given.rerun.sites, "Ids of sites; all by default");
-  rerun->add_option("--month", given.rerun.month, "YYYY-MM; the last of each site by default");
-  CLI::Option* failed = rerun->add_flag("--failed", given.rerun.failed, "Only those that failed");
-  rerun->add_flag("--set-aside", given.rerun.set_aside, "Only those that were set aside")
+void add_fleet_verbs(Verbs& verbs) {
+  CLI::App& fleet = verbs.add_family(kFleet, "fleet", "The record of many sites, in PostgreSQL");
+  const auto init =
+      verbs.add_to(fleet, "init", "Make the record's tables, or update them", run_fleet_init);
+  add_fleet(init.app, init.given);
+
+  const auto [add, added] =
+      verbs.add_to(fleet, "add", "Register sites, or new versions of their files", run_fleet_add);
+  add_fleet(add, added);
+  add.add_option("sites", added.sites, "Site files (TOML)")->required();
+  add.add_option("--use", added.use, "What they are used for, to compare them");
+  add.add_option("--climate", added.climate, "Their climate, to compare them");
+  add.add_option("--calibrate-from", added.calibrate_from,
+                 "First month to calibrate, YYYY-MM; the last month by default");
+
+  const auto [remove, removed] =
+      verbs.add_to(fleet, "remove", "Stop accepting data from sites", run_fleet_remove);
+  add_fleet(remove, removed);
+  remove.add_option("sites", removed.sites, "Ids of sites")->required();
+
+  const auto status =
+      verbs.add_to(fleet, "status", "List sites, jobs and what went wrong", run_fleet_status);
+  add_fleet(status.app, status.given);
+  add_json(status.app, status.given);
+
+  const auto serve =
+      verbs.add_to(fleet, "serve", "Serve the pages of all sites over HTTP", run_fleet_serve);
+  add_fleet(serve.app, serve.given);
+
+  const auto [priors, taught] =
+      verbs.add_to(fleet, "priors",
+                   "Print what other sites of the same use teach one, as lines of its site file",
+                   run_fleet_priors);
+  add_fleet(priors, taught);
+  priors.add_option("site", taught.site, "Id of the site")->required();
+
+  const auto [rerun, given] =
+      verbs.add_to(fleet, "rerun", "List jobs to run again, and let them run", run_fleet_rerun);
+  add_fleet(rerun, given);
+  rerun.add_option("sites", given.sites, "Ids of sites; all by default");
+  rerun.add_option("--month", given.month, "YYYY-MM; the last of each site by default");
+  CLI::Option* failed = rerun.add_flag("--failed", given.failed, "Only those that failed");
+  rerun.add_flag("--set-aside", given.set_aside, "Only those that were set aside")
       ->excludes(failed);
-  rerun->add_flag("--yes", given.rerun.yes, "Let them run");
-  verbs.push_back(
-      {rerun, [&](const Console& console) { return run_fleet_rerun(given.rerun, console); }});
+  rerun.add_flag("--yes", given.yes, "Let them run");
 }
+
+/// What pages and scripts are made for.
+struct ShellArguments {
+  std::vector<std::string> command;
+  std::string shell;
+};
 
 /// Pages and scripts made from `app`, which has all commands by then.
-void add_shell_verbs(CLI::App& app, Arguments& given, std::vector<Verb>& verbs) {
-  CLI::App* man =
-      app.add_subcommand("man", "Print a manual page, to be read with man -l -")->group(kShell);
-  man->add_option("command", given.command, "Command; the page of recald itself by default");
-  verbs.push_back({man, [&](const Console& console) {
-                     std::vector<std::string> words;
-                     for (const std::string& word : given.command) {
-                       // recald-model-list is how the page is called
-                       for (std::string& part : CLI::detail::split(word, '-')) {
-                         if (!words.empty() || part != "recald") words.push_back(std::move(part));
-                       }
-                     }
-                     if (const auto why = unknown_word(app, words); !why.empty()) {
-                       return console.misused(why);
-                     }
-                     console.out << man_page(command_at(app, words), kVersion);
-                     return kSuccess;
-                   }});
-
-  CLI::App* schema =
-      app.add_subcommand("schema", "Print a JSON schema of the site file, for editors")
-          ->group(kShell);
-  verbs.push_back({schema, [](const Console& console) {
-                     console.out << site_schema();
-                     return kSuccess;
-                   }});
-
-  CLI::App* completion =
-      app.add_subcommand("completion", "Print a script that completes commands in a shell")
-          ->group(kShell);
-  completion->add_option("shell", given.shell, "bash, zsh or fish")
+void add_shell_verbs(CLI::App& app, ShellArguments& given, Verbs& verbs) {
+  verbs
+      .add(kShell, "man", "Print a manual page, to be read with man -l -",
+           [&](const Console& console) {
+             std::vector<std::string> words;
+             for (const std::string& word : given.command) {
+               // recald-model-list is how the page is called
+               for (std::string& part : CLI::detail::split(word, '-')) {
+                 if (!words.empty() || part != "recald") words.push_back(std::move(part));
+               }
+             }
+             if (const auto why = unknown_word(app, words); !why.empty()) {
+               return console.misused(why);
+             }
+             console.out << man_page(command_at(app, words), kVersion);
+             return kSuccess;
+           })
+      .add_option("command", given.command, "Command; the page of recald itself by default");
+  verbs.add(kShell, "schema", "Print a JSON schema of the site file, for editors",
+            [](const Console& console) {
+              console.out << site_schema();
+              return kSuccess;
+            });
+  verbs
+      .add(kShell, "completion", "Print a script that completes commands in a shell",
+           [&](const Console& console) {
+             console.out << completion_script(app, given.shell);
+             return kSuccess;
+           })
+      .add_option("shell", given.shell, "bash, zsh or fish")
       ->required()
       ->check(one_of({"bash", "zsh", "fish"}));
-  verbs.push_back({completion, [&](const Console& console) {
-                     console.out << completion_script(app, given.shell);
-                     return kSuccess;
-                   }});
 }
 
 /// The whole command line; options point into it, so it stays where it is.
@@ -743,8 +704,8 @@ struct CommandLine {
                "recald"};
   bool quiet = false;
   bool verbose = false;
-  Arguments given;
-  std::vector<Verb> verbs;
+  ShellArguments given;
+  Verbs verbs{app};
 
   CommandLine();
   CommandLine(const CommandLine&) = delete;
@@ -770,17 +731,18 @@ CommandLine::CommandLine() {
   app.fallthrough();  // recald check site.toml -q
   CLI::Option* less = app.add_flag("-q,--quiet", quiet, "Print results and failures only");
   app.add_flag("-v,--verbose", verbose, "Print every rejected row; log more")->excludes(less);
-  add_site_verbs(app, given, verbs);
-  add_store_verbs(app, given, verbs);
-  add_device_verbs(app, given, verbs);
-  add_calibration_verbs(app, given, verbs);
-  add_design_verbs(app, given, verbs);
-  add_drift_verb(app, given, verbs);
-  add_ecm_verb(app, given, verbs);
-  add_model_verbs(app, given, verbs);
-  add_engine_verbs(app, given, verbs);
-  add_worker_verb(app, given, verbs);
-  add_fleet_verbs(app, given, verbs);
+  add_site_verbs(verbs);
+  add_store_verbs(verbs);
+  add_device_verbs(verbs);
+  add_calibration_verbs(verbs);
+  add_design_verbs(verbs);
+  add_drift_verb(verbs);
+  add_ecm_verb(verbs);
+  add_finding_verbs(verbs);
+  add_model_verbs(verbs);
+  add_engine_verbs(verbs);
+  add_worker_verb(verbs);
+  add_fleet_verbs(verbs);
   add_shell_verbs(app, given, verbs);
   for (CLI::App* command : app.get_subcommands({})) hide_idle_help(*command);
   // Last, since commands inherit it.
@@ -827,15 +789,13 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
     line.app.exit(error, console.out, console.err);
     return kSuccess;
   }
-  const auto verb =
-      std::ranges::find_if(line.verbs, [](const Verb& one) { return one.command->parsed(); });
   const EndSignals signals;
   const Console told{console.out, console.err, console.is_terminal && !line.quiet,
                      line.quiet     ? Console::Detail::little
                      : line.verbose ? Console::Detail::all
                                     : Console::Detail::usual,
                      console.answers};
-  return signals.exit_code(verb->run(told));  // CLI11 has required a command
+  return signals.exit_code(line.verbs.run_parsed(told));
 }
 
 }  // namespace recald::daemon
