@@ -22,7 +22,6 @@
 #include "daemon/gateway/serve/parameters.hpp"
 #include "daemon/gateway/serve/prometheus_text.hpp"
 #include "daemon/gateway/serve/result_response.hpp"
-#include "daemon/version.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -41,28 +40,19 @@ constexpr int kAuditShown = 200;
 constexpr std::array<std::string_view, 6> kStates{"alarm", "named", "silent",
                                                   "late",  "ahead", "trouble"};
 
+constexpr std::array kFleetPages{PageLink{"/", "Sites"}, PageLink{"/rerun", "Run again"},
+                                 PageLink{"/audit", "Audit"}};
+constexpr std::array kFleetPrograms{PageLink{"/api/v1/portfolio", "portfolio"},
+                                    PageLink{"/api/v1/jobs", "jobs"},
+                                    PageLink{"/metrics", "metrics"}};
+
 Response page(const FleetServed& served, const std::string& title, const Html& main) {
-  Html html;
-  html.markup(
-      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-      "<link rel=\"stylesheet\" href=\"/style.css\"><script src=\"/page.js\" defer></script>");
-  html.element("title", title + " – recald")
-      .markup(
-          "</head><body><header><p class=\"site\">Fleet</p><nav aria-label=\"Pages\">"
-          "<a href=\"/\">Sites</a> <a href=\"/rerun\">Run again</a> <a href=\"/audit\">Audit</a>"
-          "</nav></header><main>")
-      .markup(main.str())
-      .markup("</main><footer>");
-  html.element("p",
-               fmt::format("As of {}; times are in UTC. recald {}.",
-                           metering::to_string(served.now()), kVersion),
-               "muted");
-  html.markup(
-      "<nav aria-label=\"For programs\"><a href=\"/api/v1/portfolio\">portfolio</a> "
-      "<a href=\"/api/v1/jobs\">jobs</a> <a href=\"/metrics\">metrics</a></nav>"
-      "</footer></body></html>\n");
-  return {.content_type = "text/html; charset=utf-8", .body = html.str()};
+  return framed_page({.title = title,
+                      .heading = "Fleet",
+                      .pages = kFleetPages,
+                      .as_of = metering::to_string(served.now()) + "; times are in UTC",
+                      .for_programs = kFleetPrograms},
+                     main);
 }
 
 /// The record is away: a retry may work.

@@ -23,21 +23,22 @@ using report::Cell;
 using report::Html;
 using report::Table;
 
-struct Link {
-  PageKind kind;
-  const char* address;
-  const char* text;
-};
-constexpr std::array kLinks{
-    Link{PageKind::now, "/", "Now"}, Link{PageKind::months, "/months", "Months"},
-    Link{PageKind::model, "/model", "Model"}, Link{PageKind::data, "/data", "Data"},
-    Link{PageKind::events, "/events", "Events"}};
+constexpr std::array kSitePages{PageLink{"/", "Now"}, PageLink{"/months", "Months"},
+                                PageLink{"/model", "Model"}, PageLink{"/data", "Data"},
+                                PageLink{"/events", "Events"}};
+constexpr std::array kSitePrograms{PageLink{"/api/v1/openapi.json", "interface"},
+                                   PageLink{"/api/v1/meters", "meters"},
+                                   PageLink{"/api/v1/months", "months"},
+                                   PageLink{"/api/v1/events", "events"},
+                                   PageLink{"/metrics", "metrics"},
+                                   PageLink{"/readyz", "readiness"}};
 
-void write_links(Html& html, PageKind here) {
-  html.markup("<nav aria-label=\"Pages\">");
-  for (const Link& link : kLinks) {
+void write_links(Html& html, const char* label, std::span<const PageLink> links,
+                 const PageLink* here) {
+  html.markup(fmt::format("<nav aria-label=\"{}\">", label));
+  for (const PageLink& link : links) {
     html.markup(fmt::format("<a href=\"{}\"{}>{}</a> ", link.address,
-                            link.kind == here ? " aria-current=\"page\"" : "", link.text));
+                            &link == here ? " aria-current=\"page\"" : "", link.text));
   }
   html.markup("</nav>");
 }
@@ -64,37 +65,43 @@ Cell job_state_cell(const StoredJob& job, std::int64_t in_use) {
 
 }  // namespace
 
-http::Response page_of(const Served& served, PageKind kind, const std::string& title,
-                       const Html& main) {
-  const std::string site = served.site.name.empty() ? served.site.id : served.site.name;
+http::Response framed_page(const PageFrame& frame, const Html& main) {
   Html html;
   html.markup(
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
       "<link rel=\"stylesheet\" href=\"/style.css\">"
       "<script src=\"/page.js\" defer></script>");
-  html.element("title", (title.empty() ? "" : title + " – ") + site + " – recald")
-      .markup(shows_progress(kind) ? "</head><body data-live><header>" : "</head><body><header>");
-  html.element("p", site, "site");
-  write_links(html, kind);
+  html.element("title", frame.title + " – recald")
+      .markup(frame.is_live ? "</head><body data-live><header>" : "</head><body><header>");
+  html.element("p", frame.heading, "site");
+  write_links(html, "Pages", frame.pages, frame.here);
   html.markup("</header><main>").markup(main.str()).markup("</main>");
   // Text is escaped, so no other text can look like this.
   if (main.str().find(report::kZoomableMarkup) != std::string::npos) {
     html.markup("<script src=\"/charts.js\" defer></script>");
   }
   html.markup("<footer>");
-  html.element(
-      "p",
-      fmt::format("As of {}; times are in {}. recald {}.",
-                  site_time_text(served.calendar, served.now()), served.site.timezone, kVersion),
-      "muted");
-  html.markup(
-      "<nav aria-label=\"For programs\"><a href=\"/api/v1/openapi.json\">interface</a> "
-      "<a href=\"/api/v1/meters\">meters</a> "
-      "<a href=\"/api/v1/months\">months</a> <a href=\"/api/v1/events\">events</a> "
-      "<a href=\"/metrics\">metrics</a> <a href=\"/readyz\">readiness</a></nav>"
-      "</footer></body></html>\n");
+  html.element("p", fmt::format("As of {}. recald {}.", frame.as_of, kVersion), "muted");
+  write_links(html, "For programs", frame.for_programs, nullptr);
+  html.markup("</footer></body></html>\n");
   return {.content_type = "text/html; charset=utf-8", .body = html.str()};
+}
+
+http::Response page_of(const Served& served, PageKind kind, const std::string& title,
+                       const Html& main) {
+  const std::string site = served.site.name.empty() ? served.site.id : served.site.name;
+  const auto place = static_cast<std::size_t>(kind);
+  return framed_page(
+      {.title = (title.empty() ? "" : title + " – ") + site,
+       .heading = site,
+       .pages = kSitePages,
+       .here = place < kSitePages.size() ? &kSitePages.at(place) : nullptr,
+       .is_live = shows_progress(kind),
+       .as_of = fmt::format("{}; times are in {}", site_time_text(served.calendar, served.now()),
+                            served.site.timezone),
+       .for_programs = kSitePrograms},
+      main);
 }
 
 http::Response page_style(const Served&) {

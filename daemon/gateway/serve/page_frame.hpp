@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "adapters/report/html.hpp"
@@ -9,6 +10,25 @@
 
 namespace recald::daemon {
 
+struct PageLink {
+  const char* address;
+  const char* text;
+};
+
+/// What stands around the middle of a page.
+struct PageFrame {
+  std::string title;    ///< Of the window.
+  std::string heading;  ///< Above the links.
+  std::span<const PageLink> pages;
+  const PageLink* here = nullptr;  ///< That of `pages` which is shown, if any.
+  bool is_live = false;            ///< It renews itself.
+  std::string as_of;               ///< "2026-03-29 03:15 +02:00; times are in Europe/Berlin"
+  std::span<const PageLink> for_programs;
+};
+
+[[nodiscard]] http::Response framed_page(const PageFrame& frame, const report::Html& main);
+
+/// In the order of the links to them.
 enum class PageKind : std::uint8_t { now, months, model, data, events, other };
 
 /// A page with the site's name above and `main` in the middle.
