@@ -18,86 +18,46 @@ namespace {
 constexpr double kJoule_kWh = 1.0 / 3.6e6;
 
 /// What meters count, in EnergyPlus's words.
-constexpr std::string_view kResources[] = {"Electricity",
-                                           "NaturalGas",
-                                           "Gasoline",
-                                           "Diesel",
-                                           "Coal",
-                                           "FuelOilNo1",
-                                           "FuelOilNo2",
-                                           "Propane",
-                                           "OtherFuel1",
-                                           "OtherFuel2",
-                                           "DistrictCooling",
-                                           "DistrictHeatingWater",
-                                           "DistrictHeatingSteam",
-                                           "EnergyTransfer",
-                                           "PlantLoopHeatingDemand",
-                                           "PlantLoopCoolingDemand",
-                                           "ElectricityPurchased",
-                                           "ElectricitySurplusSold",
-                                           "ElectricityNet",
-                                           "ElectricityProduced",
-                                           "SolarWater",
-                                           "SolarAir"};
+// clang-format off
+constexpr std::string_view kResources[] = {
+    "Electricity", "NaturalGas", "Gasoline", "Diesel", "Coal", "FuelOilNo1", "FuelOilNo2",
+    "Propane", "OtherFuel1", "OtherFuel2", "DistrictCooling", "DistrictHeatingWater",
+    "DistrictHeatingSteam", "EnergyTransfer", "PlantLoopHeatingDemand", "PlantLoopCoolingDemand",
+    "ElectricityPurchased", "ElectricitySurplusSold", "ElectricityNet", "ElectricityProduced",
+    "SolarWater", "SolarAir",
+};
+// clang-format on
 
 /// Types of objects whose numbers describe the building's substance, use and plant. A prefix each.
-constexpr std::string_view kWorthVarying[] = {"Material",
-                                              "WindowMaterial:",
-                                              "Construction:",
-                                              "People",
-                                              "Lights",
-                                              "ElectricEquipment",
-                                              "GasEquipment",
-                                              "HotWaterEquipment",
-                                              "SteamEquipment",
-                                              "OtherEquipment",
-                                              "Exterior:",
-                                              "ZoneInfiltration:",
-                                              "ZoneVentilation:",
-                                              "ZoneMixing",
-                                              "AirflowNetwork:MultiZone:Surface",
-                                              "DesignSpecification:OutdoorAir",
-                                              "Controller:OutdoorAir",
-                                              "SetpointManager:",
-                                              "Fan:",
-                                              "Pump:",
-                                              "Coil:",
-                                              "CoilPerformance:",
-                                              "Boiler:",
-                                              "Chiller:",
-                                              "CoolingTower:",
-                                              "DistrictHeating",
-                                              "DistrictCooling",
-                                              "AirTerminal:",
-                                              "HeatExchanger:",
-                                              "AirConditioner:",
-                                              "HeatPump:",
-                                              "WaterHeater:",
-                                              "WaterUse:Equipment",
-                                              "ZoneHVAC:",
-                                              "EvaporativeCooler:",
-                                              "Humidifier:",
-                                              "Dehumidifier:",
-                                              "Refrigeration:",
-                                              "Generator:",
-                                              "ElectricLoadCenter:",
-                                              "Daylighting:Controls",
-                                              "Site:GroundTemperature:",
-                                              "Site:GroundReflectance",
-                                              "Site:WaterMainsTemperature",
-                                              "SurfaceProperty:",
-                                              "WindowProperty:",
-                                              "InternalMass"};
+// clang-format off
+constexpr std::string_view kWorthVarying[] = {
+    "Material", "WindowMaterial:", "Construction:", "People", "Lights", "ElectricEquipment",
+    "GasEquipment", "HotWaterEquipment", "SteamEquipment", "OtherEquipment", "Exterior:",
+    "ZoneInfiltration:", "ZoneVentilation:", "ZoneMixing", "AirflowNetwork:MultiZone:Surface",
+    "DesignSpecification:OutdoorAir", "Controller:OutdoorAir", "SetpointManager:", "Fan:",
+    "Pump:", "Coil:", "CoilPerformance:", "Boiler:", "Chiller:", "CoolingTower:",
+    "DistrictHeating", "DistrictCooling", "AirTerminal:", "HeatExchanger:", "AirConditioner:",
+    "HeatPump:", "WaterHeater:", "WaterUse:Equipment", "ZoneHVAC:", "EvaporativeCooler:",
+    "Humidifier:", "Dehumidifier:", "Refrigeration:", "Generator:", "ElectricLoadCenter:",
+    "Daylighting:Controls", "Site:GroundTemperature:", "Site:GroundReflectance",
+    "Site:WaterMainsTemperature", "SurfaceProperty:", "WindowProperty:", "InternalMass",
+};
+// clang-format on
 
 /// Among those, what joins things together.
+// clang-format off
 constexpr std::string_view kNotWorthVarying[] = {
     "ZoneHVAC:EquipmentConnections", "ZoneHVAC:EquipmentList", "ZoneHVAC:AirDistributionUnit",
-    "WindowProperty:FrameAndDivider", "ElectricLoadCenter:Distribution"};
+    "WindowProperty:FrameAndDivider", "ElectricLoadCenter:Distribution",
+};
+// clang-format on
 
 /// Fields that place or number things.
-constexpr std::string_view kNotQuantities[] = {"_coordinate",  "sequence",    "number_of_speeds",
-                                               "coefficient_", "convergence", "idf_"};
+// clang-format off
+constexpr std::string_view kNotQuantities[] = {
+    "_coordinate", "sequence", "number_of_speeds", "coefficient_", "convergence", "idf_",
+};
+// clang-format on
 
 bool is_resource(std::string_view part) {
   return std::ranges::find(kResources, part) != std::end(kResources);

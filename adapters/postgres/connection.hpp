@@ -1,4 +1,5 @@
-/// A connection to PostgreSQL, by libpq.
+/// A connection to PostgreSQL, by libpq. (A call of libpqxx waits for as long as the server takes,
+/// and what it had connected stays broken.)
 ///
 /// Blocking; one thread at a time. A connection that broke is made again by the next statement
 /// outside a transaction. A peer that vanished is an error after half a minute at most, for us and
