@@ -2,13 +2,11 @@
 
 #include <chrono>
 
-#include "core/display/warning.hpp"
 #include "daemon/commands/calibration_options.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
 #include "daemon/commands/generated_at.hpp"
-#include "daemon/site/calibrate/design_calibration.hpp"
-#include "daemon/site/calibrate/design_site.hpp"
+#include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/calibration_folder.hpp"
 
@@ -55,33 +53,32 @@ int run_calibrate_design(const CalibrateArguments& arguments, const Console& con
   if (!design) return design.error();
   const auto measured = doe::read_measurements(measurements_file(arguments), *design);
   if (!measured) return console.fail(measured.error());
-  const auto design_site = check_design_site(*design);
-  if (!design_site) return console.fail(design_site.error());
+  const auto origin = check_origin(*design);
+  if (!origin) return console.fail(origin.error());
   auto facts = design_facts(arguments, *design);
   if (!facts) return console.fail(facts.error());
-  DesignCalibrationOptions options = design_options(arguments, std::move(*calibration));
-  options.held = design_site->held;
+  FinishedDesign begun{.name = folder_name(arguments.design.folder),
+                       .design = std::move(*design),
+                       .calibration = {},
+                       .facts = std::move(*facts)};
 
   const InterruptGuard guard;
-  auto calibrated = [&] {
+  auto done = [&] {
     ProgressLine line{console};
-    return calibrate_design(*design, *measured, options, run_context(arguments, guard, line));
+    return finish_calibration(std::move(begun), *origin, *measured,
+                              design_options(arguments, std::move(*calibration)),
+                              run_context(arguments, guard, line));
   }();
-  if (!calibrated) return console.fail(calibrated.error());
-  display::add_notes(design_site->notes, calibrated->warnings);
-  RunFacts complete = with_sampling(std::move(*facts), arguments.seed, calibrated->calibration);
-  FinishedDesign done{.name = folder_name(arguments.design.folder),
-                      .design = std::move(*design),
-                      .calibration = std::move(*calibrated),
-                      .facts = std::move(complete)};
-  done.facts.wall_s =
+  if (!done) return console.fail(done.error());
+  done->facts.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
-  const std::string json = calibration_json(done.calibration, done.facts);
-  return deliver(
-      done.calibration, json, arguments, console, [&](const std::filesystem::path& folder) {
-        return write_calibration(done, months_csv(done.calibration), json, generated_at(), folder);
-      });
+  const std::string json = calibration_json(done->calibration, done->facts);
+  return deliver(done->calibration, json, arguments, console,
+                 [&](const std::filesystem::path& folder) {
+                   return write_calibration(*done, months_csv(done->calibration), json,
+                                            generated_at(), folder);
+                 });
 }
 
 }  // namespace recald::daemon

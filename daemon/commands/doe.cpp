@@ -9,9 +9,9 @@
 #include "daemon/commands/engine_runs.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/calibrate/design_origin.hpp"
 #include "daemon/site/calibrate/design_outliers.hpp"
-#include "daemon/site/calibrate/design_site.hpp"
-#include "daemon/site/calibrate/site_design.hpp"
+#include "daemon/site/calibrate/design_plan.hpp"
 #include "daemon/site/calibrate/site_runs.hpp"
 #include "daemon/site/model/active_effects.hpp"
 

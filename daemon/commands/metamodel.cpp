@@ -6,7 +6,7 @@
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/design_input.hpp"
 #include "daemon/site/calibrate/design_calibration.hpp"
-#include "daemon/site/calibrate/design_site.hpp"
+#include "daemon/site/calibrate/design_origin.hpp"
 #include "daemon/site/results/design_files.hpp"
 
 namespace recald::daemon {
@@ -42,8 +42,8 @@ int run_metamodel(const MetamodelArguments& arguments, const Console& console) {
   const auto begin = std::chrono::steady_clock::now();
   const auto design = open_design_folder(arguments.design, console);
   if (!design) return design.error();
-  const auto design_site = check_design_site(*design);
-  if (!design_site) return console.fail(design_site.error());
+  const auto origin = check_origin(*design);
+  if (!origin) return console.fail(origin.error());
   const auto data = chosen_data(*design, arguments.parameters);
   if (!data) return console.fail(data.error());
   const auto fitted = fit_metamodel(*data, metamodel_options(arguments.design, arguments.seed));
@@ -55,7 +55,7 @@ int run_metamodel(const MetamodelArguments& arguments, const Console& console) {
   facts->wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   std::vector<std::string> notes = design->notes;
-  notes.insert(notes.end(), design_site->notes.begin(), design_site->notes.end());
+  notes.insert(notes.end(), origin->notes.begin(), origin->notes.end());
   notes.insert(notes.end(), fitted->notes.begin(), fitted->notes.end());
   std::vector<regression::CheckedOutput> checked;
   if (!arguments.check.empty()) {

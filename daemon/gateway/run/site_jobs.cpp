@@ -12,7 +12,7 @@
 #include "adapters/system/write_file.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
-#include "daemon/site/calibrate/site_on_design.hpp"
+#include "daemon/site/calibrate/calibration_on_design.hpp"
 #include "daemon/site/diagnose/proposed_version.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/drift/site_drift.hpp"

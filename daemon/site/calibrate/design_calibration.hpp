@@ -12,7 +12,6 @@
 #include "core/result.hpp"
 #include "core/screening/screen.hpp"
 #include "daemon/site/calibrate/design_metamodel.hpp"
-#include "daemon/site/model/run_facts.hpp"
 
 namespace recald::daemon {
 
@@ -21,7 +20,7 @@ struct DesignCalibrationOptions {
   std::filesystem::path given_metamodel;  ///< Or empty: one is fitted.
   /// "screened": those that screening keeps; "all"; or names separated by commas.
   std::string parameters = "screened";
-  /// Never calibrated unless named in `parameters`: see design_site.hpp.
+  /// Never calibrated unless named in `parameters`: see design_origin.hpp.
   std::vector<std::string> held;
   calibration::CalibrationOptions calibration;
   bool prior_sensitivity = false;
@@ -31,14 +30,6 @@ struct DesignCalibration : assessment::AssessedCalibration {
   std::vector<doe::DesignMonth> months;           ///< Those of `month_names`.
   std::optional<screening::Screening> screening;  ///< Where it chose the parameters.
   std::optional<FittedMetamodel> fitted;          ///< Absent where one was given.
-};
-
-/// Everything that a calibration on a design leaves behind.
-struct FinishedDesign {
-  std::string name;  ///< Of the building: the folder's, or the site's.
-  doe::DesignFolder design;
-  DesignCalibration calibration;
-  RunFacts facts;
 };
 
 /// Indices of months, ascending by time.

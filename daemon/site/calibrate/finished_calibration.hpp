@@ -1,10 +1,12 @@
-/// One calibration of a site from its readings to its files, as the command and the daemon do it.
+/// One calibration of a site, or of a design of experiments, as commands and the daemon do it: all
+/// that its files are made from.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "core/calibration/calibration.hpp"
+#include "daemon/site/calibrate/design_calibration.hpp"
+#include "daemon/site/calibrate/design_origin.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 
@@ -16,8 +18,24 @@ struct FinishedCalibration {
   SiteCalibration calibration;
 };
 
+struct FinishedDesign {
+  std::string name;  ///< Of the building: the folder's, or the site's.
+  doe::DesignFolder design;
+  DesignCalibration calibration;
+  RunFacts facts;
+};
+
 /// With the effects of the version in force. @return or the errors of `calibrate_site`.
 [[nodiscard]] Result<FinishedCalibration> finish_calibration(
     ModelledSite modelled, const CalibrateOptions& options, const calibration::RunContext& context);
+
+/// A design whose months were measured. `done` comes with all but the calibration.
+/// @param origin  What it must not teach is held, and said.
+/// @return or the errors of `calibrate_design`
+[[nodiscard]] Result<FinishedDesign> finish_calibration(FinishedDesign done,
+                                                        const DesignOrigin& origin,
+                                                        const doe::Measurements& measured,
+                                                        DesignCalibrationOptions options,
+                                                        const calibration::RunContext& context);
 
 }  // namespace recald::daemon

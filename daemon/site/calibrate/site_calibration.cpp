@@ -22,7 +22,7 @@
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/calibrate/effects_calibration.hpp"
 #include "daemon/site/calibrate/meter_forecast.hpp"
-#include "daemon/site/calibrate/site_metamodel.hpp"
+#include "daemon/site/calibrate/site_on_runs.hpp"
 #include "daemon/site/calibrate/yardstick.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
 #include "daemon/site/model/site_model.hpp"

@@ -15,8 +15,8 @@
 #include "adapters/system/file_lock.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/write_file.hpp"
+#include "daemon/site/calibrate/design_plan.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
-#include "daemon/site/calibrate/site_design.hpp"
 #include "daemon/site/model/energyplus_site.hpp"
 
 namespace recald::daemon {

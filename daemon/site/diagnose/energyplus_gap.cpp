@@ -8,7 +8,7 @@
 
 #include "core/model/metamodel/builders.hpp"
 #include "core/model/model_adaptors.hpp"
-#include "daemon/site/calibrate/site_metamodel.hpp"
+#include "daemon/site/calibrate/site_on_runs.hpp"
 #include "daemon/site/diagnose/held_figures.hpp"
 
 namespace recald::daemon {

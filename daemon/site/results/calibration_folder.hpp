@@ -7,7 +7,6 @@
 
 #include "adapters/report/report_data.hpp"
 #include "core/result.hpp"
-#include "daemon/site/calibrate/design_calibration.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
 
 namespace recald::daemon {

@@ -4,9 +4,7 @@
 #include <string>
 
 #include "adapters/report/report_data.hpp"
-#include "daemon/site/calibrate/design_calibration.hpp"
-#include "daemon/site/calibrate/site_calibration.hpp"
-#include "daemon/site/model/run_facts.hpp"
+#include "daemon/site/calibrate/finished_calibration.hpp"
 
 namespace recald::daemon {
 

@@ -11,7 +11,7 @@
 #include "core/display/id_words.hpp"
 #include "core/model/metamodel/builders.hpp"
 #include "daemon/site/calibrate/design_outliers.hpp"
-#include "daemon/site/calibrate/site_metamodel.hpp"
+#include "daemon/site/calibrate/site_on_runs.hpp"
 #include "daemon/site/savings/measure_columns.hpp"
 #include "daemon/site/savings/measure_runs.hpp"
 

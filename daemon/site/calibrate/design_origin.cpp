@@ -1,4 +1,4 @@
-#include "daemon/site/calibrate/design_site.hpp"
+#include "daemon/site/calibrate/design_origin.hpp"
 
 #include <fmt/format.h>
 
@@ -65,19 +65,19 @@ Result<void> note_site(const std::filesystem::path& folder, const std::filesyste
   return system::write_file(folder / kSiteFile, json.dump(2) + "\n");
 }
 
-Result<DesignSite> check_design_site(const doe::DesignFolder& design) {
+Result<DesignOrigin> check_origin(const doe::DesignFolder& design) {
   const std::filesystem::path file = design.folder / kSiteFile;
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return DesignSite{};
+  if (!std::filesystem::exists(file, ignored)) return DesignOrigin{};
   const auto note = TRY(read_note(file));
   const std::filesystem::path site_file = (design.folder / note.site).lexically_normal();
   const auto site = load_site(site_file);
   if (!site) {
-    return DesignSite{note.effects,
-                      {fmt::format("The design's site file '{}' cannot be read, so nobody knows "
-                                   "whether its model has effects that the design lacks.",
-                                   site_file.string())},
-                      site_file};
+    return DesignOrigin{note.effects,
+                        {fmt::format("The design's site file '{}' cannot be read, so nobody knows "
+                                     "whether its model has effects that the design lacks.",
+                                     site_file.string())},
+                        site_file};
   }
   const auto effects = TRY(active_effects(*site));
   TRY(require_in_design(effects, design.parameters));
@@ -89,7 +89,7 @@ Result<DesignSite> check_design_site(const doe::DesignFolder& design) {
                                "longer has; run `recald doe` without it.",
                                name));
   }
-  DesignSite result;
+  DesignOrigin result;
   result.site_file = site_file;
   for (const AddedEffect& effect : effects) {
     if (teaches(effect, design)) continue;

@@ -21,7 +21,7 @@ namespace recald::daemon {
                                      const std::vector<diagnosis::AddedEffect>& effects);
 
 /// What a calibration on a design must know of its site.
-struct DesignSite {
+struct DesignOrigin {
   /// Parameters of effects that these months must not teach again: they are held, and what they
   /// could move counts as error.
   std::vector<std::string> held;
@@ -34,6 +34,6 @@ struct DesignSite {
 ///         unsupported  an effect of the version in force is not in the design, or the design
 ///                      varies one that is no longer in force;
 ///         malformed    site.json is damaged; or what `active_effects` finds.
-[[nodiscard]] Result<DesignSite> check_design_site(const doe::DesignFolder& design);
+[[nodiscard]] Result<DesignOrigin> check_origin(const doe::DesignFolder& design);
 
 }  // namespace recald::daemon

@@ -1,4 +1,4 @@
-#include "daemon/site/calibrate/site_on_design.hpp"
+#include "daemon/site/calibrate/calibration_on_design.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include "adapters/system/sha256.hpp"
 #include "core/absent.hpp"
 #include "core/display/warning.hpp"
+#include "daemon/site/calibrate/design_origin.hpp"
 #include "daemon/site/calibrate/design_outliers.hpp"
-#include "daemon/site/calibrate/design_site.hpp"
-#include "daemon/site/calibrate/site_design.hpp"
+#include "daemon/site/calibrate/design_plan.hpp"
 #include "daemon/site/model/active_effects.hpp"
 
 namespace recald::daemon {
@@ -67,36 +67,31 @@ Result<FinishedDesign> calibrate_on_metamodel(const ModelledSite& modelled,
                                               const calibration::RunContext& context) {
   auto design = TRY(doe::read_design_folder(folder));
   for (std::string& note : set_aside_outliers(design)) design.notes.push_back(std::move(note));
-  auto design_site = TRY(check_design_site(design));
+  const auto origin = TRY(check_origin(design));
   const SiteConfig& site = modelled.site.config;
   std::error_code ignored;
-  const bool is_others = !design_site.site_file.empty() &&
-                         !std::filesystem::equivalent(design_site.site_file, site.file, ignored);
+  const bool is_others = !origin.site_file.empty() &&
+                         !std::filesystem::equivalent(origin.site_file, site.file, ignored);
   if (is_others) {
     return failure(ErrorCode::unsupported,
                    fmt::format("the design in {} was run for {} and not for this site; run `recald "
                                "doe` for it",
-                               folder.string(), design_site.site_file.string()));
+                               folder.string(), origin.site_file.string()));
   }
   auto version = TRY(active_version(site));
-  FinishedDesign done{.name = site.name, .design = {}, .calibration = {}, .facts = modelled.facts};
   const auto prepared = TRY(prepare_site(site, modelled.site.calendar, modelled.recording,
                                          modelled.weather, std::move(version.effects)));
   const auto measured = TRY(measurements_for(design, prepared));
-
-  DesignCalibrationOptions options;
-  options.held = std::move(design_site.held);
-  done.calibration = TRY(calibrate_design(design, measured, options, context));
-  display::add_notes(design_site.notes, done.calibration.warnings);
-  display::add_notes(measured.notes, done.calibration.warnings);
   const auto design_facts = TRY(facts_of_files(design.files, name_of(ModelKind::metamodel)));
   system::Sha256 both;
   both.add(modelled.facts.data_revision);
   both.add(design_facts.data_revision);
+  FinishedDesign done{
+      .name = site.name, .design = std::move(design), .calibration = {}, .facts = modelled.facts};
   done.facts.data_revision = both.hex();
   done.facts.model_version = design_facts.model_version;
-  done.facts = with_sampling(std::move(done.facts), context.seed, done.calibration.calibration);
-  done.design = std::move(design);
+  done = TRY(finish_calibration(std::move(done), origin, measured, {}, context));
+  display::add_notes(measured.notes, done.calibration.warnings);
   return done;
 }
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "daemon/site/calibrate/design_calibration.hpp"
+#include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 

@@ -1,4 +1,4 @@
-#include "daemon/site/calibrate/site_metamodel.hpp"
+#include "daemon/site/calibrate/site_on_runs.hpp"
 
 #include <fmt/format.h>
 

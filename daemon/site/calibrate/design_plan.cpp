@@ -1,4 +1,4 @@
-#include "daemon/site/calibrate/site_design.hpp"
+#include "daemon/site/calibrate/design_plan.hpp"
 
 #include <algorithm>
 #include <vector>
