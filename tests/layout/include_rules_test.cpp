@@ -8,9 +8,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace recald::layout {
@@ -110,6 +113,106 @@ std::string without_words(const std::string& source) {
     at = std::max(end, at + 1);
   }
   return bare;
+}
+
+/// A source as what it takes to tell where its names come from.
+struct Source {
+  std::set<std::string> included;
+  std::set<std::string> words;
+  std::set<std::string> of;  ///< Namespaces, without those around them: "metering".
+  /// What it calls by a namespace: {"metering", "month_of"}.
+  std::set<std::pair<std::string, std::string>> names;
+};
+using Sources = std::map<std::string, Source>;
+
+Source parse_source(const std::string& text, std::set<std::string> included) {
+  const std::string bare = without_words(text);
+  const auto is_of_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
+  Source source{std::move(included), {}, {}, {}};
+  bool opens_namespace = false;
+  std::string around;  // what the word before was, if :: joins them
+  for (std::size_t at = 0; at < bare.size();) {
+    if (!is_of_word(bare[at])) {
+      if (bare[at++] == '{') opens_namespace = false;
+      continue;
+    }
+    const auto end =
+        std::find_if_not(bare.begin() + static_cast<std::ptrdiff_t>(at), bare.end(), is_of_word);
+    std::string word{bare.begin() + static_cast<std::ptrdiff_t>(at), end};
+    at += word.size();
+    const bool is_around = bare.compare(at, 2, "::") == 0;
+    // Other people's namespaces are opened to name a class before its header.
+    if (opens_namespace && !is_around && !around.empty()) source.of.insert(word);
+    if (!opens_namespace && !around.empty()) source.names.emplace(around, word);
+    source.words.insert(word);
+    opens_namespace = word == "namespace" || (opens_namespace && is_around);
+    around = is_around ? std::move(word) : std::string{};
+  }
+  return source;
+}
+
+std::set<std::string> reached_from(const std::string& file, const Sources& sources) {
+  std::set<std::string> reached;
+  std::vector<std::string> next{file};
+  while (!next.empty()) {
+    const auto source = sources.find(next.back());
+    next.pop_back();
+    if (source == sources.end()) continue;
+    for (const std::string& other : source->second.included) {
+      if (reached.insert(other).second) next.push_back(other);
+    }
+  }
+  return reached;
+}
+
+/// Names of other rooms that a file uses without a header that declares them.
+std::vector<std::string> names_from_nowhere(const Sources& sources) {
+  std::map<std::string, std::vector<std::string>> headers;  // by namespace
+  for (const auto& [file, source] : sources) {
+    if (!file.ends_with(".hpp")) continue;
+    for (const std::string& space : source.of) headers[space].push_back(file);
+  }
+  std::vector<std::string> found;
+  for (const auto& [file, source] : sources) {
+    std::set<std::string> reached = reached_from(file, sources);
+    reached.insert(file);
+    for (const auto& [space, name] : source.names) {
+      std::vector<std::string> having = headers[space];
+      std::erase_if(having, [&, &name = name](const std::string& header) {
+        return !sources.at(header).words.contains(name);
+      });
+      const auto is_reached = [&](const std::string& header) { return reached.contains(header); };
+      if (having.empty() || std::ranges::any_of(having, is_reached)) continue;
+      found.push_back(file + " uses " + space + "::" + name);
+    }
+  }
+  return found;
+}
+
+// Files are compiled together, where one has what another includes. Alone, as in the everyday
+// build, it would not compile.
+TEST(Names, OfAnotherRoomComeWithAHeaderThatDeclaresThem) {
+  const std::filesystem::path root{RECALD_SOURCE_DIR};
+  Sources sources;
+  for (auto& [file, included] : read_includes(root.string())) {
+    std::ostringstream text;
+    text << std::ifstream{root / file}.rdbuf();
+    sources[file] = parse_source(text.str(), std::move(included));
+  }
+  ASSERT_GT(sources.size(), 500u) << "the sources were not found";
+  EXPECT_THAT(names_from_nowhere(sources), IsEmpty());
+}
+
+TEST(Names, FromNowhereAreFound) {
+  const Sources sources{
+      {"core/a/a.hpp", parse_source("namespace recald::a {\nint f();\n}", {})},
+      {"core/b/b.hpp", parse_source("", {"core/a/a.hpp"})},
+      {"core/c/c.cpp", parse_source("int g() { return a::f(); }", {"core/b/b.hpp"})},
+      {"core/c/d.cpp", parse_source("int g() { return a::f() + std::f(); }", {})},
+      {"core/c/e.cpp", parse_source("// a::f\nconst char* g() { return \"a::f\"; }", {})}};
+  EXPECT_THAT(names_from_nowhere(sources), ElementsAre("core/c/d.cpp uses a::f"));
 }
 
 /// Arguments of the call whose parenthesis opens at `open`.
