@@ -221,7 +221,7 @@ class RegisterServer::Serving {
   /// @return false if the client does not take what it asked for.
   bool answer(const Client& client, std::span<const std::uint8_t> frame) {
     const std::shared_ptr<Words> registers = latest();
-    const RequestVerdict verdict = judge_request(frame, registers->size());
+    const RequestVerdict verdict = check_request(frame, registers->size());
     modbus_set_socket(encoder_.get(), client.socket.number());
     if (verdict != RequestVerdict::read) {
       ++refused_;

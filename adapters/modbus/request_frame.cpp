@@ -29,7 +29,7 @@ CutRequest cut_request(std::span<const std::uint8_t> bytes) {
   return {Kind::whole, size};
 }
 
-RequestVerdict judge_request(std::span<const std::uint8_t> frame, std::size_t registers) {
+RequestVerdict check_request(std::span<const std::uint8_t> frame, std::size_t registers) {
   const std::uint8_t function = frame[kFunctionAt];
   if (function != static_cast<std::uint8_t>(Function::read_holding_registers) &&
       function != static_cast<std::uint8_t>(Function::read_input_registers)) {

@@ -39,7 +39,7 @@ enum class RequestVerdict : std::uint8_t {
 
 /// @param frame      As cut.
 /// @param registers  Of the map, which begins at address 0.
-[[nodiscard]] RequestVerdict judge_request(std::span<const std::uint8_t> frame,
+[[nodiscard]] RequestVerdict check_request(std::span<const std::uint8_t> frame,
                                            std::size_t registers);
 
 }  // namespace recald::modbus

@@ -131,7 +131,7 @@ struct OutboxEntry {
 
 /// How far a destination has been told.
 struct OutboxPosition {
-  std::int64_t told;  ///< Number of the last entry that it has had.
+  std::int64_t sent;  ///< Number of the last entry that it has had.
   std::int64_t last;  ///< Number of the last entry of all.
 };
 

@@ -113,7 +113,7 @@ Result<bool> Taking::lock() {
       "h.entries >= $8)",
       {site_id_, parameter(now_), integer(batch_.outbox), integer(batch_.after.entries),
        integer(batch_.after.events), integer(batch_.after.results), partitions.parameter(),
-       integer(kHistoryTold)}));
+       integer(kHistorySent)}));
   if (rows.size() == 0) return false;
   site_ = rows.integer(0, 0);
   known_ = {
@@ -347,7 +347,7 @@ Result<void> Taking::put_results() {
 }
 
 Result<void> Taking::put_watermark() {
-  const bool is_end = until_.entries == kHistoryTold;  // which is no row
+  const bool is_end = until_.entries == kHistorySent;  // which is no row
   postgres::Parameter newest;
   for (const OutboxEntry& entry : batch_.entries) {
     const auto* const interval = std::get_if<StoredInterval>(&entry.stored);

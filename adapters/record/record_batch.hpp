@@ -43,7 +43,7 @@ struct Watermark {
 };
 
 /// The last number of an outbox of the past, greater than any other: all of it was told.
-inline constexpr std::int64_t kHistoryTold = std::int64_t{1} << 46;
+inline constexpr std::int64_t kHistorySent = std::int64_t{1} << 46;
 
 /// A part of what a gateway's store has, in order.
 struct RecordBatch {

@@ -31,7 +31,7 @@ Result<void> put_cursor(Database& database, const std::string& destination, std:
 }
 
 /// Deletes what every destination has had, and all where there is none.
-Result<void> forget_told(Database& database) {
+Result<void> forget_sent(Database& database) {
   return database.execute(
       "DELETE FROM outbox WHERE number <= (SELECT coalesce(min(position), 9223372036854775807) "
       "FROM cursor WHERE destination GLOB 'outbox *')");
@@ -70,7 +70,7 @@ Result<void> keep_outbox_for(Database& database, const std::vector<std::string>&
                 identity_cursor(name), taken_cursor(name))
               .run());
     }
-    return forget_told(database);
+    return forget_sent(database);
   });
 }
 
@@ -110,7 +110,7 @@ Result<OutboxPosition> outbox_position(Database& database, const std::string& de
       fmt::format("SELECT {}, (SELECT position FROM cursor WHERE destination = ?)", kLastNumber)));
   TRY(bound(query, std::string{kPrefix} + destination).step());
   const std::int64_t last = query.integer(0);
-  return OutboxPosition{.told = query.is_null(1) ? last : query.integer(1), .last = last};
+  return OutboxPosition{.sent = query.is_null(1) ? last : query.integer(1), .last = last};
 }
 
 Result<void> put_outbox_position(Database& database, const std::string& destination,
@@ -119,7 +119,7 @@ Result<void> put_outbox_position(Database& database, const std::string& destinat
     if (auto put = put_cursor(database, std::string{kPrefix} + destination, number); !put) {
       return put;
     }
-    return forget_told(database);
+    return forget_sent(database);
   });
 }
 

@@ -13,7 +13,7 @@
 
 namespace recald::system {
 
-Result<FileLock> FileLock::take(const std::filesystem::path& file) {
+Result<FileLock> FileLock::acquire(const std::filesystem::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kPrivateMode);
   if (descriptor < 0) {
     return failure(ErrorCode::io_failed, fmt::format("'{}' cannot be made: {}", file.string(),

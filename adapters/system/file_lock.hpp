@@ -13,7 +13,7 @@ class FileLock {
  public:
   /// @return unsupported when another process holds the lock, io_failed when the file
   ///         cannot be created.
-  [[nodiscard]] static Result<FileLock> take(const std::filesystem::path& file);
+  [[nodiscard]] static Result<FileLock> acquire(const std::filesystem::path& file);
 
   /// Whether another process holds the lock, without creating the file. For a moment nobody else
   /// can take it.

@@ -83,7 +83,7 @@ class TableSniffer {
     if (rows_.empty()) return failure(ErrorCode::malformed, "it is empty");
     TRY(find_times());
     TRY(find_header());
-    look_at_columns();
+    inspect_columns();
     find_clock();
     TRY(find_time_format());
     find_meters();
@@ -191,7 +191,7 @@ class TableSniffer {
     return std::span{rows_}.subspan(data_);
   }
 
-  void look_at_columns() {
+  void inspect_columns() {
     kinds_.assign(width_, {});
     for (const KeptRow* row : data()) {
       for (std::size_t column = 0; column < row->cells.size(); ++column) {

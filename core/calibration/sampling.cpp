@@ -281,11 +281,11 @@ class Sampling {
       return ran;
     }
     result_.report.burn_in = own.burn_in;
-    judge(sampler, chains, 0);
+    evaluate(sampler, chains, 0);
     for (int doubling = 1; doubling <= doublings_max() && !result_.converged; ++doubling) {
       if (options_.sampler == nullptr && worst_rhat() > kHopelessRhat) break;
       if (auto ran = chains.double_draws(); !ran) return ran;
-      judge(sampler, chains, doubling);
+      evaluate(sampler, chains, doubling);
     }
     chains.count(result_);
     if (pilot != nullptr) disagreement_ = compare(*pilot, chains);
@@ -302,7 +302,7 @@ class Sampling {
       populations.let_jump();
       if (auto ran = populations.run(own, {}); !ran) return ran;
       result_.report.burn_in = 0;
-      judge(sampler, populations, doubling);
+      evaluate(sampler, populations, doubling);
       populations.count(result_);
       note_evidence(populations);
       if (result_.converged || doubling == doublings_max()) return {};
@@ -310,7 +310,7 @@ class Sampling {
   }
 
   /// Computes summaries and checks the gate for the chains' current draws.
-  void judge(const Sampler& sampler, const Chains& chains, int doublings) {
+  void evaluate(const Sampler& sampler, const Chains& chains, int doublings) {
     result_.chains = chains.natural_draws();
     result_.parameters =
         summarise_parameters(posterior_.parameters(), result_.chains, context_.executor);

@@ -152,7 +152,7 @@ DailyAlarm DailyWatch::alarm_of(int month) const {
           .excess = measured_kW / expected_kW - 1.0};
 }
 
-std::optional<DailyAlarm> DailyWatch::look(int month) {
+std::optional<DailyAlarm> DailyWatch::evaluate(int month) {
   if (!is_able_) return std::nullopt;
   const auto days = measured([&](const WatchedDay& day) {
     return day.month == month && (!begun_ || day.date >= *begun_);

@@ -48,7 +48,7 @@ class DailyWatch {
 
   /// Looks at a month's days. After an alarm the reference is learned again from the change on.
   /// @pre months ascend, the learning ones left out
-  [[nodiscard]] std::optional<DailyAlarm> look(int month);
+  [[nodiscard]] std::optional<DailyAlarm> evaluate(int month);
 
   /// The building has become another one; what was known of it is worth little, and true but for a
   /// factor of the whole that nobody knows better than to `level_sd`.

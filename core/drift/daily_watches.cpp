@@ -28,10 +28,10 @@ DailyWatches::DailyWatches(std::vector<Output> outputs, std::vector<std::string>
 
 bool DailyWatches::is_able() const { return !watched_.empty(); }
 
-std::vector<Alarm> DailyWatches::look(int month) {
+std::vector<Alarm> DailyWatches::evaluate(int month) {
   std::vector<Alarm> alarms;
   for (Watched& watched : watched_) {
-    const auto alarm = watched.watch.look(month);
+    const auto alarm = watched.watch.evaluate(month);
     if (!alarm) continue;
     watched.begun = alarm->since;
     alarms.push_back(alarm_of(watched, *alarm));

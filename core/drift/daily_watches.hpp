@@ -32,7 +32,7 @@ class DailyWatches {
   [[nodiscard]] bool is_able() const;
 
   /// Alarms of a month's days, in order of output.
-  [[nodiscard]] std::vector<Alarm> look(int month);
+  [[nodiscard]] std::vector<Alarm> evaluate(int month);
 
   /// The building is another one since that month; meters that know of it by their own alarm go on.
   void begin_at(int month);

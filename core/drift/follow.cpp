@@ -140,7 +140,7 @@ Result<FollowedWindow> follow_expanding(const Ground& ground, const FollowOption
       [&](int month) -> Result<MonthTaken> {
         auto one = TRY(prequential.step(month, proceed));
         drift.record.push_back(std::move(one));
-        TRY(inquiries.look(drift.record.back()));
+        TRY(inquiries.evaluate(drift.record.back()));
         return drift.record.back().taken;
       });
   for (std::size_t k = 0; k < drift.outputs.size(); ++k) {

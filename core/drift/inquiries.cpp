@@ -61,8 +61,8 @@ void blame_meter(ExplainedAlarm& alarm, const MeterChange& change) {
 
 }  // namespace
 
-Result<void> Inquiries::look(const PrequentialMonth& month) {
-  for (const Alarm& alarm : daily_.look(month.month)) {
+Result<void> Inquiries::evaluate(const PrequentialMonth& month) {
+  for (const Alarm& alarm : daily_.evaluate(month.month)) {
     if (auto opened = open(alarm, month.month); !opened) return opened;
   }
   for (const Alarm& alarm : month.alarms) {

@@ -48,7 +48,7 @@ class Inquiries {
 
   /// After a month was taken in. Days say first when something changed.
   /// @return or an error of the model or of sampling.
-  [[nodiscard]] Result<void> look(const PrequentialMonth& month);
+  [[nodiscard]] Result<void> evaluate(const PrequentialMonth& month);
 
  private:
   struct Open {

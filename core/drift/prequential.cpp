@@ -37,7 +37,7 @@ Prequential::Prequential(SequentialCalibration calibration, calibration::Posteri
   for (LevelOutput& level : levels) levels_.push_back({std::move(level), LevelForecast{}});
 }
 
-Result<void> Prequential::look_at_points(PrequentialMonth& record) {
+Result<void> Prequential::evaluate_points(PrequentialMonth& record) {
   if (!calibration_.has_begun()) return {};
   const auto forecasts = TRY(calibration_.forecast(record.month));
   std::size_t next = 0;  // forecasts come in the order of the month's points
@@ -54,7 +54,7 @@ Result<void> Prequential::look_at_points(PrequentialMonth& record) {
   return {};
 }
 
-void Prequential::look_at_levels(PrequentialMonth& record) {
+void Prequential::evaluate_levels(PrequentialMonth& record) {
   const auto month = static_cast<std::size_t>(record.month);
   for (Level& level : levels_) {
     const double modelled = level.output.modelled[month];
@@ -96,9 +96,9 @@ Result<void> Prequential::set_aside(int output, int since, const std::function<b
 Result<PrequentialMonth> Prequential::step(int month, const std::function<bool()>& proceed) {
   PrequentialMonth record{.month = month, .outputs = {}, .taken = {.month = month}, .alarms = {}};
   record.outputs.resize(all_.scales.size());
-  TRY(look_at_points(record));
+  TRY(evaluate_points(record));
   record.taken = TRY(calibration_.take(month, proceed));
-  look_at_levels(record);
+  evaluate_levels(record);
   std::vector<std::optional<double>> surprises;
   for (const auto& output : record.outputs) {
     surprises.push_back(output ? std::optional{output->surprise.standardised} : std::nullopt);

@@ -79,8 +79,8 @@ class Prequential {
  private:
   SequentialCalibration calibration_;
   /// What the points say of a month. @return or an error of forecasting.
-  [[nodiscard]] Result<void> look_at_points(PrequentialMonth& record);
-  void look_at_levels(PrequentialMonth& record);
+  [[nodiscard]] Result<void> evaluate_points(PrequentialMonth& record);
+  void evaluate_levels(PrequentialMonth& record);
 
   struct Level {
     LevelOutput output;

@@ -44,7 +44,7 @@ class LevelWatch {
     const double level = std::log(figure.daily_average_kWh);
     const std::optional<double> reference = reference_for(figure.month);
     if (reference && !is_small(level, *reference)) {
-      judge({&figure, level, level - *reference});
+      evaluate({&figure, level, level - *reference});
     } else if (!open_ && stepped_.empty()) {
       accept_level(figure.month, level);
     }
@@ -100,12 +100,12 @@ class LevelWatch {
     return {centre, std::sqrt(squares / (n0 + n))};
   }
 
-  void judge(Compared month) {
+  void evaluate(Compared month) {
     const Scatter expected = scatter();
     month.z = (month.log_ratio - expected.centre) / expected.scale;
     month.step = recent_.empty() ? month.log_ratio : month.log_ratio - median_log_ratio(recent_);
     if (std::abs(month.step) > std::log(options_.scale_factor_min)) {
-      judge_step(month, expected.scale);
+      evaluate_step(month, expected.scale);
     } else {
       give_up_step();
       if (!open_) watch(month);
@@ -120,7 +120,7 @@ class LevelWatch {
   }
 
   /// A month a whole factor off. Where one such month may be the weather, it waits for another.
-  void judge_step(const Compared& month, double scale) {
+  void evaluate_step(const Compared& month, double scale) {
     if (!stepped_.empty()) {
       const Compared& last = stepped_.back();
       const bool is_same_side = (last.step > 0.0) == (month.step > 0.0);

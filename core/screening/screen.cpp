@@ -142,7 +142,7 @@ class OutputScreen {
 };
 
 /// The union over outputs.
-void judge(ScreenedParameter& parameter, const ScreenOptions& options) {
+void evaluate(ScreenedParameter& parameter, const ScreenOptions& options) {
   parameter.verdict = Verdict::not_detected;
   for (std::size_t k = 0; k < parameter.effects.size(); ++k) {
     const ParameterEffect& effect = parameter.effects[k];
@@ -198,7 +198,7 @@ Result<Screening> screen(const DesignData& design, const ScreenOptions& options,
       screening.parameters[j].effects.push_back(result.effects[j]);
     }
   }
-  for (ScreenedParameter& parameter : screening.parameters) judge(parameter, options);
+  for (ScreenedParameter& parameter : screening.parameters) evaluate(parameter, options);
   return screening;
 }
 

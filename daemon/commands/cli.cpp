@@ -752,7 +752,7 @@ CommandLine::CommandLine() {
 }
 
 /// "recald calibrate has no option …" names the program itself.
-int tell_misuse(const std::string& sentence, const Console& console) {
+int report_misuse(const std::string& sentence, const Console& console) {
   if (!sentence.starts_with("recald ")) return console.misused(sentence);
   console.err << sentence << "\n";
   return kUsage;
@@ -780,12 +780,12 @@ int run_cli(int argc, const char* const* argv, const Console& console) {
   }
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (const auto why = unknown_word(line.app, words); !why.empty())
-    return tell_misuse(why, console);
+    return report_misuse(why, console);
   try {
     line.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // CLI11 prints help and version through the same door, with exit code 0.
-    if (error.get_exit_code() != 0) return tell_misuse(sentence_of(line.app, error), console);
+    if (error.get_exit_code() != 0) return report_misuse(sentence_of(line.app, error), console);
     line.app.exit(error, console.out, console.err);
     return kSuccess;
   }

@@ -72,7 +72,7 @@ int run_import(const ImportArguments& arguments, const Console& console) {
   }
   const auto site = open_site(arguments.site);
   if (!site) return console.fail(site.error());
-  const auto lock = system::FileLock::take(site->config.store.file.string() + ".lock");
+  const auto lock = system::FileLock::acquire(site->config.store.file.string() + ".lock");
   if (!lock) {
     return console.fail(lock.error().message + "; stop the daemon, import, and start it again");
   }

@@ -99,8 +99,8 @@ std::string now_text() {
 }
 
 /// @param how  "back"
-int tell_change(const ModelArguments& arguments, const Console& console,
-                const ModelVersion& version, std::string_view how) {
+int report_change(const ModelArguments& arguments, const Console& console,
+                  const ModelVersion& version, std::string_view how) {
   if (arguments.json) {
     const Json json = {{"active", version.version}, {"effects", effect_ids(version)}};
     console.out << json.dump(2) + "\n";
@@ -137,7 +137,7 @@ int run_model_apply(const ModelArguments& arguments, const Console& console) {
   if (!store) return store.error();
   const auto version = store->activate(arguments.version, now_text());
   if (!version) return console.fail(version.error());
-  return tell_change(arguments, console, *version, "now");
+  return report_change(arguments, console, *version, "now");
 }
 
 int run_model_revert(const ModelArguments& arguments, const Console& console) {
@@ -145,7 +145,7 @@ int run_model_revert(const ModelArguments& arguments, const Console& console) {
   if (!store) return store.error();
   const auto version = store->revert(arguments.version, now_text());
   if (!version) return console.fail(version.error());
-  return tell_change(arguments, console, *version, "back");
+  return report_change(arguments, console, *version, "back");
 }
 
 }  // namespace recald::daemon

@@ -66,7 +66,7 @@ bool is_export(const std::filesystem::path& file) {
 }
 
 /// Asks for the zone where an export needs one and somebody is there to answer.
-std::string zone_told(const ReportArguments& arguments, const Console& console) {
+std::string given_zone(const ReportArguments& arguments, const Console& console) {
   if (!arguments.timezone.empty() || console.answers == nullptr) return arguments.timezone;
   for (const std::filesystem::path& file : arguments.files) {
     const auto needs = needs_timezone(file);
@@ -105,7 +105,7 @@ InitCommand init_command(const ReportArguments& arguments, const std::string& zo
 }
 
 int report_exports(const ReportArguments& arguments, const Console& console) {
-  const std::string zone = zone_told(arguments, console);
+  const std::string zone = given_zone(arguments, console);
   const std::filesystem::path here{"site.toml"};  // where recald init would write
   const auto drafted = draft_aloud(arguments.files, zone, ".", console);
   if (!drafted) return drafted.error();

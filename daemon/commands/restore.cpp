@@ -95,7 +95,7 @@ int run_restore(const RestoreArguments& arguments, const Console& console) {
   const StoreConfig& store = site->config.store;
   if (arguments.list) return list_backups(site->config, arguments, console);
   const std::filesystem::path lock_file = store.file.string() + ".lock";
-  const auto lock = system::FileLock::take(lock_file);
+  const auto lock = system::FileLock::acquire(lock_file);
   if (!lock) {
     return console.fail(lock.error().message + "; stop the daemon, restore, and start it again");
   }

@@ -47,7 +47,7 @@ class Attempt {
     }
     std::ranges::stable_sort(trial_.fields, {},
                              [](const FieldTrial& one) { return one.found.field->address; });
-    judge_resolution();
+    evaluate_resolution();
     return std::move(trial_);
   }
 
@@ -160,7 +160,7 @@ class Attempt {
     return kUsualShare * rated_kW;
   }
 
-  void judge_resolution() {
+  void evaluate_resolution() {
     if (!meter_.meter.rated_kW) return;
     for (const FieldTrial& one : trial_.fields) {
       const auto& energy = live_.map.energy;

@@ -226,7 +226,7 @@ class Sent : public LiveWeather {
                     if (job.ended) ended_.push_back(job);
                   });
     wait_.emplace(WeatherWait::Ports{loop_, *store_, looker_},
-                  make_weather_look(share({site_, calendar_})), [this] { ask("weather"); });
+                  make_weather_check(share({site_, calendar_})), [this] { ask("weather"); });
     wait_->start();
   }
   void ask(const char* by) { ASSERT_TRUE(jobs_->ask(JobKind::calibration, by).has_value()); }

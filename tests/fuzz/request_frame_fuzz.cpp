@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(cut.size >= 8 && cut.size <= recald::modbus::kTcpFrameMax && cut.size <= left.size(),
             "a frame lies within its bytes");
     const Bytes frame = left.first(cut.size);
-    require_right(frame, registers, recald::modbus::judge_request(frame, registers));
+    require_right(frame, registers, recald::modbus::check_request(frame, registers));
     left = left.subspan(cut.size);
   }
 }

@@ -97,7 +97,7 @@ class Ingester {
  public:
   Ingester(const BrokerConfig& broker, const TellWords& tell, const std::stop_token& stop,
            IngestCounts& counts)
-      : broker_(broker), tell_(tell), stop_(stop), counts_(counts) {}
+      : broker_(broker), notify_(tell), stop_(stop), counts_(counts) {}
 
   /// Takes batches until it is told to stop. @return or why the record or the broker cannot go on.
   Result<void> serve(postgres::Connection& record) {
@@ -112,12 +112,12 @@ class Ingester {
         [&](const mqtt::Message& message) { arrivals.push(message); },
         [&](bool is_connected, const std::string& why) {
           if (is_connected && why.empty()) arrivals.connected();
-          if (!why.empty()) tell_(why);
+          if (!why.empty()) notify_(why);
         }));
-    tell_("the record is there: batches of gateways are taken");
+    notify_("the record is there: batches of gateways are taken");
     while (!stop_.stop_requested()) {
       if (arrivals.is_new_connection()) {
-        if (auto done = tell_all(record, *connection); !done) return done;
+        if (auto done = notify_all(record, *connection); !done) return done;
       }
       std::vector<mqtt::Message> answers;
       for (const mqtt::Message& message : arrivals.take()) {
@@ -131,7 +131,7 @@ class Ingester {
 
  private:
   /// Everything that was retained may be gone, and gateways may wait for a word.
-  Result<void> tell_all(postgres::Connection& record, mqtt::Connection& connection) {
+  Result<void> notify_all(postgres::Connection& record, mqtt::Connection& connection) {
     const auto all = TRY(record::watermarks(record));
     std::vector<mqtt::Message> messages;
     for (const auto& [site, watermark] : all) messages.push_back(told(site, watermark));
@@ -196,11 +196,11 @@ class Ingester {
     const auto known = refused_.find(site);
     if (known != refused_.end() && moment - known->second < kReportRefusalsEvery) return;
     refused_[site] = moment;
-    tell_(why);
+    notify_(why);
   }
 
   const BrokerConfig& broker_;
-  const TellWords& tell_;
+  const TellWords& notify_;
   const std::stop_token& stop_;
   IngestCounts& counts_;
   std::map<std::string, steady_clock::time_point> refused_;

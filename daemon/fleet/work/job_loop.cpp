@@ -76,7 +76,7 @@ std::string why_it_ended(const system::ChildEnd& end, const fs::path& folder) {
 class Jobs {
  public:
   Jobs(const JobLoop& loop, const TellWords& tell, const std::stop_token& stop)
-      : loop_(loop), tell_(tell), stop_(stop) {}
+      : loop_(loop), notify_(tell), stop_(stop) {}
 
   /// Until it is told to stop, or nothing is left. @return or why the record cannot be used.
   Result<void> work(postgres::Connection& record) {
@@ -88,7 +88,7 @@ class Jobs {
         continue;
       }
       if (loop_.ends_when_idle) return {};
-      TRY(record.wait_for(record::kJobChannel, loop_.look_every, stop_));
+      TRY(record.wait_for(record::kJobChannel, loop_.poll_every, stop_));
     }
     return {};
   }
@@ -185,14 +185,14 @@ class Jobs {
                     const std::string& words) {
     if (!kept) return tl::unexpected(kept.error());
     if (!words.empty()) {
-      tell_(fmt::format("{} {}{}", words_of(job), words,
-                        *kept ? "" : "; somebody else had finished it"));
+      notify_(fmt::format("{} {}{}", words_of(job), words,
+                          *kept ? "" : "; somebody else had finished it"));
     }
     return {};
   }
 
   const JobLoop& loop_;
-  const TellWords& tell_;
+  const TellWords& notify_;
   const std::stop_token& stop_;
   int count_ = 0;
 };

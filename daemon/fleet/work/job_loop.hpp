@@ -17,7 +17,7 @@ struct JobLoop {
   std::string name;               ///< Of the worker, for people: "host/1234/1".
   std::filesystem::path program;  ///< recald itself.
   record::LeaseRules rules = {};
-  std::chrono::milliseconds look_every{30'000};  ///< Unless the record calls earlier.
+  std::chrono::milliseconds poll_every{30'000};  ///< Unless the record calls earlier.
   bool ends_when_idle = false;                   ///< Otherwise it waits for the next job.
 };
 

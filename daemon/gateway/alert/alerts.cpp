@@ -17,9 +17,9 @@ using metering::Instant;
 using std::chrono::milliseconds;
 
 constexpr std::size_t kHeardMax = 1'000;
-constexpr std::size_t kToldMax = 1'000;
+constexpr std::size_t kNotifiedMax = 1'000;
 /// What a new destination is told of the past. The recovery of a store at the start is in it.
-constexpr std::chrono::hours kToldAtFirst{1};
+constexpr std::chrono::hours kNotifiedAtFirst{1};
 constexpr int kEventsOfThePast = 1'000;
 constexpr int kPagesMax = 20;                // of events at a look
 constexpr std::chrono::days kCountedFor{1};  // as the store counts repeated events
@@ -64,13 +64,13 @@ std::string destination_words(const AlertDestination& destination) {
 
 Alerts::Alerts(Ports ports, std::shared_ptr<const SiteConfig> site,
                metering::LocalCalendar calendar, Deliver deliver,
-               std::function<void(StoreEvent)> tell, Told told, const AlertRules& rules)
+               std::function<void(StoreEvent)> notify, Notified notified, const AlertRules& rules)
     : ports_(ports),
       calendar_(std::move(calendar)),
       deliver_(std::move(deliver)),
-      tell_(std::move(tell)),
+      notify_(std::move(notify)),
       rules_(rules),
-      told_(std::move(told)) {
+      notified_(std::move(notified)) {
   set_site(std::move(site));
 }
 
@@ -110,12 +110,12 @@ void Alerts::schedule(milliseconds wait) {
   ports_.loop.after(wait, alive_.guard([this, due] {
     if (due_ != due) return;
     due_.reset();
-    look();
+    poll();
   }));
 }
 
-void Alerts::look() {
-  schedule(rules_.look_every);
+void Alerts::poll() {
+  schedule(rules_.poll_every);
   if (is_sending_) return;  // its end looks again
   const Moment now = ports_.loop.now();
   for (Outgoing& outgoing : outgoing_) {
@@ -143,7 +143,7 @@ Result<std::int64_t> Alerts::position_of(Outgoing& outgoing, Instant now) {
   const auto past = TRY(ports_.store.events(kEventsOfThePast));
   std::int64_t position = 0;
   for (const StoreEvent& event : past) {
-    const bool is_old = is_plausible_time(event.time) && event.time < now - kToldAtFirst;
+    const bool is_old = is_plausible_time(event.time) && event.time < now - kNotifiedAtFirst;
     if (is_old) position = std::max(position, event.number);
   }
   // Now, so that what this destination misses is still new to it after a restart.
@@ -169,7 +169,7 @@ Result<void> Alerts::add_stored(Outgoing& outgoing, const Moment& now, Pending& 
     const auto events = TRY(ports_.store.events_after(*pending.position, rules_.events));
     for (const StoreEvent& event : events) {
       pending.position = event.number;
-      const bool is_new = is_alert(event, now.instant()) && !was_told(outgoing, event);
+      const bool is_new = is_alert(event, now.instant()) && !was_notified(outgoing, event);
       if (is_new) pending.events.push_back(event);
     }
     if (std::ssize(events) < rules_.events) break;
@@ -184,7 +184,7 @@ void Alerts::add_unstored(const Outgoing& outgoing, const Moment& now, Pending& 
       return stored.kind == event.kind && stored.subject == event.subject &&
              stored.time == event.time;
     });
-    if (is_stored || !is_alert(event, now.instant()) || was_told(outgoing, event)) continue;
+    if (is_stored || !is_alert(event, now.instant()) || was_notified(outgoing, event)) continue;
     pending.events.push_back(event);
   }
 }
@@ -197,10 +197,10 @@ bool Alerts::is_alert(const StoreEvent& event, Instant now) const {
   return is_chosen && (!is_plausible_time(at) || at > now - rules_.forget);
 }
 
-bool Alerts::was_told(const Outgoing& outgoing, const StoreEvent& event) const {
-  const auto told = told_.find(outgoing.cursor);
-  if (told == told_.end()) return false;
-  return std::ranges::any_of(told->second, [&](const ToldEvent& one) {
+bool Alerts::was_notified(const Outgoing& outgoing, const StoreEvent& event) const {
+  const auto notified = notified_.find(outgoing.cursor);
+  if (notified == notified_.end()) return false;
+  return std::ranges::any_of(notified->second, [&](const NotifiedEvent& one) {
     const bool is_repeated =
         event.is_counted && one.time <= event.time && event.time < one.time + kCountedFor;
     return one.kind == event.kind && one.subject == event.subject &&
@@ -252,7 +252,7 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
     outgoing->wait = is_first ? rules_.retry_min : std::min(2 * outgoing->wait, rules_.retry_max);
     outgoing->not_before = now.monotonic + outgoing->wait;
     if (is_first) {
-      tell_(
+      notify_(
           {.time = now.instant(),
            .severity = Severity::warning,
            .kind = "alert_not_sent",
@@ -264,22 +264,22 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
     return schedule(milliseconds{0});
   }
   outgoing->wait = outgoing->not_before = milliseconds{0};
-  auto& told = told_[cursor];
+  auto& notified = notified_[cursor];
   for (const StoreEvent& event : pending.events) {
-    told.push_back({event.time, event.kind, event.subject});
+    notified.push_back({event.time, event.kind, event.subject});
   }
-  keep_newest(told, kToldMax);
+  keep_newest(notified, kNotifiedMax);
   move(*outgoing, pending.position);
-  tell_({.time = now.instant(),
-         .severity = Severity::info,
-         .kind = "alert_sent",
-         .subject = words,
-         .text = fmt::format("{} sent as {}",
-                             pending.events.size() == 1
-                                 ? "1 alert was"
-                                 : fmt::format("{} alerts were", pending.events.size()),
-                             words),
-         .is_counted = true});
+  notify_({.time = now.instant(),
+           .severity = Severity::info,
+           .kind = "alert_sent",
+           .subject = words,
+           .text = fmt::format("{} sent as {}",
+                               pending.events.size() == 1
+                                   ? "1 alert was"
+                                   : fmt::format("{} alerts were", pending.events.size()),
+                               words),
+           .is_counted = true});
   schedule(milliseconds{0});
 }
 

@@ -26,7 +26,7 @@ namespace recald::daemon {
 
 struct AlertRules {
   std::chrono::milliseconds gather{10'000};      ///< What happens together is one message.
-  std::chrono::milliseconds look_every{60'000};  ///< For the end of quiet hours.
+  std::chrono::milliseconds poll_every{60'000};  ///< For the end of quiet hours.
   std::chrono::milliseconds retry_min{60'000};   ///< After a failure; doubles.
   std::chrono::milliseconds retry_max{3'600'000};
   std::chrono::hours forget{72};  ///< Older events are not told any more.
@@ -53,17 +53,17 @@ class Alerts {
   };
 
   /// What a destination has been told, by the name of its cursor.
-  struct ToldEvent {
+  struct NotifiedEvent {
     metering::Instant time;
     std::string kind;
     std::string subject;
   };
-  using Told = std::map<std::string, std::deque<ToldEvent>>;
+  using Notified = std::map<std::string, std::deque<NotifiedEvent>>;
 
   /// @param tell  Receives events about the deliveries themselves.
   /// @param told  By an earlier object, whose store was another.
   Alerts(Ports ports, std::shared_ptr<const SiteConfig> site, metering::LocalCalendar calendar,
-         Deliver deliver, std::function<void(StoreEvent)> tell, Told told = {},
+         Deliver deliver, std::function<void(StoreEvent)> notify, Notified notified = {},
          const AlertRules& rules = {});
   /// Stops the worker's delivery early.
   ~Alerts();
@@ -79,7 +79,7 @@ class Alerts {
   /// Continues with another site file. Destinations that stay are told what is new to them.
   void set_site(std::shared_ptr<const SiteConfig> site);
 
-  [[nodiscard]] Told take_told() { return std::move(told_); }
+  [[nodiscard]] Notified take_notified() { return std::move(notified_); }
 
  private:
   struct Outgoing {
@@ -96,13 +96,13 @@ class Alerts {
   };
 
   void schedule(std::chrono::milliseconds wait);
-  void look();
+  void poll();
   [[nodiscard]] Result<Pending> pending_for(Outgoing& outgoing, const Moment& now);
   [[nodiscard]] Result<std::int64_t> position_of(Outgoing& outgoing, metering::Instant now);
   [[nodiscard]] Result<void> add_stored(Outgoing& outgoing, const Moment& now, Pending& pending);
   void add_unstored(const Outgoing& outgoing, const Moment& now, Pending& pending) const;
   [[nodiscard]] bool is_alert(const StoreEvent& event, metering::Instant now) const;
-  [[nodiscard]] bool was_told(const Outgoing& outgoing, const StoreEvent& event) const;
+  [[nodiscard]] bool was_notified(const Outgoing& outgoing, const StoreEvent& event) const;
   [[nodiscard]] bool waits_for_morning(const Pending& pending, metering::Instant now) const;
   void move(Outgoing& outgoing, std::optional<std::int64_t> position);
   void send(const Outgoing& outgoing, Pending pending, metering::Instant now);
@@ -112,10 +112,10 @@ class Alerts {
   std::shared_ptr<const SiteConfig> site_;
   metering::LocalCalendar calendar_;
   Deliver deliver_;
-  std::function<void(StoreEvent)> tell_;
+  std::function<void(StoreEvent)> notify_;
   AlertRules rules_;
   std::vector<Outgoing> outgoing_;
-  Told told_;
+  Notified notified_;
   /// What may not be in the store yet, or not at all.
   struct Heard {
     StoreEvent event;

@@ -28,7 +28,7 @@ Sent send_safely(Sink& sink, const OutgoingBatch& batch, const std::stop_token& 
 }
 
 const OutboxEntry kEndOfHistory{
-    .number = record::kHistoryTold, .meter = "", .interval = std::chrono::seconds{1}, .stored = {}};
+    .number = record::kHistorySent, .meter = "", .interval = std::chrono::seconds{1}, .stored = {}};
 constexpr std::chrono::hours kCalm{24};  // without being told anew
 constexpr int kResults_max = 10;         // of a tenth of a megabyte each
 constexpr std::array kJobKinds{JobKind::calibration, JobKind::diagnosis};
@@ -61,11 +61,11 @@ Result<std::vector<StoredJob>> jobs_between(Store& store, std::int64_t after, st
 }  // namespace
 
 Forwarder::Forwarder(Ports ports, std::unique_ptr<Worker> worker, Destination destination,
-                     std::unique_ptr<Sink> sink, Tell tell, const ForwardRules& rules)
+                     std::unique_ptr<Sink> sink, Notify notify, const ForwardRules& rules)
     : ports_(ports),
       destination_(std::move(destination)),
       sink_(std::move(sink)),
-      tell_(std::move(tell)),
+      notify_(std::move(notify)),
       rules_(rules),
       batch_(rules.batch),
       worker_(std::move(worker)) {}
@@ -73,9 +73,9 @@ Forwarder::Forwarder(Ports ports, std::unique_ptr<Worker> worker, Destination de
 Forwarder::~Forwarder() { stop_.request_stop(); }
 
 DestinationStatus Forwarder::status() const {
-  DestinationStatus status{.name = destination_.words, .why = why_, .told_at = told_at_};
+  DestinationStatus status{.name = destination_.words, .why = why_, .sent_at = sent_at_};
   const auto position = ports_.store.outbox_position(destination_.id);
-  if (position) status.waiting = position->last - position->told;
+  if (position) status.waiting = position->last - position->sent;
   return status;
 }
 
@@ -86,7 +86,7 @@ void Forwarder::schedule(milliseconds wait) {
   ports_.loop.after(wait, alive_.guard([this, due] {
     if (due_ != due) return;
     due_.reset();
-    look();
+    poll();
   }));
 }
 
@@ -97,8 +97,8 @@ void Forwarder::try_now() {
   schedule(milliseconds{0});
 }
 
-void Forwarder::look() {
-  schedule(rules_.look_every);
+void Forwarder::poll() {
+  schedule(rules_.poll_every);
   if (is_sending_ || ports_.loop.now().monotonic < not_before_) return;
   auto batch = next();
   // A store that cannot be read says so itself.
@@ -119,8 +119,8 @@ Result<OutgoingBatch> Forwarder::next() {
   if (!from) return tl::unexpected(from.error());
   auto past = next_history();
   if (!past || past->size() > 0) return past;
-  batch.after.entries = from->told;
-  batch.entries = TRY(ports_.store.outbox_after(from->told, batch_));
+  batch.after.entries = from->sent;
+  batch.entries = TRY(ports_.store.outbox_after(from->sent, batch_));
   for (const auto add : {&Forwarder::add_events, &Forwarder::add_results}) {
     TRY((this->*add)(batch));
   }
@@ -134,7 +134,7 @@ Result<OutgoingBatch> Forwarder::next_history() {
   const std::string cursor = history_cursor(destination_.id);
   const auto known = TRY(ports_.store.cursor(cursor));
   const std::int64_t after = known.value_or(0);
-  if (after >= record::kHistoryTold) return batch;
+  if (after >= record::kHistorySent) return batch;
   if (after == 0) {
     // What waits by now is part of the past, which is read after this.
     const auto position = TRY(ports_.store.outbox_position(destination_.id));
@@ -142,7 +142,7 @@ Result<OutgoingBatch> Forwarder::next_history() {
   }
   auto entries = TRY(history_after(ports_.store, destination_.history, after, batch_));
   if (entries.empty() && !destination_.has_identity) {
-    TRY(ports_.store.put_cursor(cursor, record::kHistoryTold));
+    TRY(ports_.store.put_cursor(cursor, record::kHistorySent));
     return batch;
   }
   if (entries.empty()) entries.push_back(kEndOfHistory);
@@ -192,23 +192,23 @@ Result<void> Forwarder::add_results(OutgoingBatch& batch) {
 Result<OutboxPosition> Forwarder::position() {
   auto position = ports_.store.outbox_position(destination_.id);
   if (!position) return position;
-  const std::int64_t left_out = position->last - position->told - rules_.waiting_max;
+  const std::int64_t left_out = position->last - position->sent - rules_.waiting_max;
   if (left_out <= 0) return position;
   if (destination_.has_identity) {
     TRY(begin_anew(ports_.store, destination_.id));
-    tell_of_anew("has not taken anything for so long that more waits than is kept for it");
+    report_resend("has not taken anything for so long that more waits than is kept for it");
     return position;
   }
-  position->told += left_out;
-  TRY(ports_.store.put_outbox_position(destination_.id, position->told));
-  tell_({.time = ports_.loop.now().instant(),
-         .severity = Severity::error,
-         .kind = "forward_left_out",
-         .subject = destination_.words,
-         .text = fmt::format("{} has not taken anything for so long that the oldest {} intervals "
-                             "and months are not sent to it any more; they are in the store",
-                             destination_.words, left_out),
-         .is_counted = true});
+  position->sent += left_out;
+  TRY(ports_.store.put_outbox_position(destination_.id, position->sent));
+  notify_({.time = ports_.loop.now().instant(),
+           .severity = Severity::error,
+           .kind = "forward_left_out",
+           .subject = destination_.words,
+           .text = fmt::format("{} has not taken anything for so long that the oldest {} intervals "
+                               "and months are not sent to it any more; they are in the store",
+                               destination_.words, left_out),
+           .is_counted = true});
   return position;
 }
 
@@ -238,11 +238,11 @@ void Forwarder::finish(const OutgoingBatch& batch, const Sent& sent) {
   is_sending_ = false;
   switch (sent.outcome) {
     case Sent::Outcome::taken:
-      if (is_beyond_us(batch, sent)) return tell_anew(batch, sent);
+      if (is_beyond_us(batch, sent)) return resend_all(batch, sent);
       if (!move_past(batch)) return;
       break;
     case Sent::Outcome::behind:
-      return tell_anew(batch, sent);
+      return resend_all(batch, sent);
     case Sent::Outcome::partly:
       if (!set_aside(batch, sent.why)) return;
       break;
@@ -256,7 +256,7 @@ void Forwarder::finish(const OutgoingBatch& batch, const Sent& sent) {
     case Sent::Outcome::later:
       return wait_after(sent);
   }
-  tell_of_success();
+  report_success();
   batch_ = std::min(2 * batch_, rules_.batch);
   schedule(milliseconds{0});
 }
@@ -296,7 +296,7 @@ bool Forwarder::is_beyond_us(const OutgoingBatch& batch, const Sent& sent) const
 
 /// What one side has and the other does not know of is not guessed: all is told again, under
 /// another identity.
-void Forwarder::tell_anew(const OutgoingBatch& batch, const Sent& sent) {
+void Forwarder::resend_all(const OutgoingBatch& batch, const Sent& sent) {
   const bool is_behind = sent.outcome == Sent::Outcome::behind;
   const auto done = ports_.store.as_one([&]() -> Result<void> {
     if (auto begun = begin_anew(ports_.store, destination_.id); !begun) return begun;
@@ -309,10 +309,10 @@ void Forwarder::tell_anew(const OutgoingBatch& batch, const Sent& sent) {
                                    std::min(batch.after.results, sent.until->results));
   });
   if (!done) return wait_after({.outcome = Sent::Outcome::later, .why = done.error().message});
-  tell_of_anew(is_behind
-                   ? "has less than it had confirmed, as after a backup of it was restored"
-                   : "has more than this store has told it, as after an image of this machine "
-                     "was restored");
+  report_resend(is_behind
+                    ? "has less than it had confirmed, as after a backup of it was restored"
+                    : "has more than this store has told it, as after an image of this machine "
+                      "was restored");
   // The first time at once; where two records answer in turns, this would have no end.
   const milliseconds now = ports_.loop.now().monotonic;
   const bool was_calm = !anew_at_ || now - *anew_at_ > kCalm;
@@ -323,15 +323,15 @@ void Forwarder::tell_anew(const OutgoingBatch& batch, const Sent& sent) {
   schedule(wait);
 }
 
-void Forwarder::tell_of_anew(const std::string& why) {
-  tell_({.time = ports_.loop.now().instant(),
-         .severity = Severity::warning,
-         .kind = "forward_anew",
-         .subject = destination_.words,
-         .text = fmt::format("{} {}; everything that the store has of the present meters is sent "
-                             "to it again",
-                             destination_.words, why),
-         .is_counted = true});
+void Forwarder::report_resend(const std::string& why) {
+  notify_({.time = ports_.loop.now().instant(),
+           .severity = Severity::warning,
+           .kind = "forward_anew",
+           .subject = destination_.words,
+           .text = fmt::format("{} {}; everything that the store has of the present meters is sent "
+                               "to it again",
+                               destination_.words, why),
+           .is_counted = true});
 }
 
 bool Forwarder::set_aside(const OutgoingBatch& batch, const std::string& why) {
@@ -341,13 +341,13 @@ bool Forwarder::set_aside(const OutgoingBatch& batch, const std::string& why) {
       : !batch.entries.empty() ? fmt::format("a reading of '{}'", batch.entries.front().meter)
       : !batch.events.empty()  ? "an event"
                                : "a result";
-  tell_({.time = ports_.loop.now().instant(),
-         .severity = Severity::warning,
-         .kind = "forward_refused",
-         .subject = destination_.words,
-         .text = fmt::format("{} refuses {}, which is not sent again: {}", destination_.words, what,
-                             why),
-         .is_counted = true});
+  notify_({.time = ports_.loop.now().instant(),
+           .severity = Severity::warning,
+           .kind = "forward_refused",
+           .subject = destination_.words,
+           .text = fmt::format("{} refuses {}, which is not sent again: {}", destination_.words,
+                               what, why),
+           .is_counted = true});
   return true;
 }
 
@@ -362,27 +362,27 @@ void Forwarder::wait_after(const Sent& sent) {
   schedule(until);
   why_ = sent.why;
   if (!is_first) return;
-  tell_({.time = now.instant(),
-         .severity = Severity::warning,
-         .kind = "forward_failed",
-         .subject = destination_.words,
-         .text = fmt::format("nothing can be sent to {}: {}; recald keeps it and tries again",
-                             destination_.words, sent.why),
-         .is_counted = true});
+  notify_({.time = now.instant(),
+           .severity = Severity::warning,
+           .kind = "forward_failed",
+           .subject = destination_.words,
+           .text = fmt::format("nothing can be sent to {}: {}; recald keeps it and tries again",
+                               destination_.words, sent.why),
+           .is_counted = true});
 }
 
-void Forwarder::tell_of_success() {
+void Forwarder::report_success() {
   const Moment now = ports_.loop.now();
-  told_at_ = now.instant();
+  sent_at_ = now.instant();
   not_before_ = milliseconds{0};
   if (std::exchange(wait_, milliseconds{0}) == milliseconds{0}) return;
   why_.clear();
-  tell_({.time = now.instant(),
-         .severity = Severity::info,
-         .kind = "forward_works",
-         .subject = destination_.words,
-         .text = fmt::format("{} takes data again", destination_.words),
-         .is_counted = true});
+  notify_({.time = now.instant(),
+           .severity = Severity::info,
+           .kind = "forward_works",
+           .subject = destination_.words,
+           .text = fmt::format("{} takes data again", destination_.words),
+           .is_counted = true});
 }
 
 }  // namespace recald::daemon

@@ -25,7 +25,7 @@
 namespace recald::daemon {
 
 struct ForwardRules {
-  std::chrono::milliseconds look_every{2'000};
+  std::chrono::milliseconds poll_every{2'000};
   std::chrono::milliseconds retry_min{5'000};  ///< After a failure; doubles.
   std::chrono::milliseconds retry_max{300'000};
   std::chrono::milliseconds asked_max{3'600'000};  ///< Waits as the other side asks, up to this.
@@ -51,11 +51,11 @@ class Forwarder {
     Loop& loop;
     Store& store;
   };
-  using Tell = std::function<void(StoreEvent)>;
+  using Notify = std::function<void(StoreEvent)>;
 
   /// @pre the store keeps an outbox for the destination (Store::keep_outbox_for)
   Forwarder(Ports ports, std::unique_ptr<Worker> worker, Destination destination,
-            std::unique_ptr<Sink> sink, Tell tell, const ForwardRules& rules = {});
+            std::unique_ptr<Sink> sink, Notify notify, const ForwardRules& rules = {});
   /// Waits for a batch that is being sent, which is told to stop.
   ~Forwarder();
   Forwarder(const Forwarder&) = delete;
@@ -72,7 +72,7 @@ class Forwarder {
 
  private:
   void schedule(std::chrono::milliseconds wait);
-  void look();
+  void poll();
   [[nodiscard]] Result<OutgoingBatch> next();
   [[nodiscard]] Result<OutgoingBatch> next_history();
   [[nodiscard]] Result<OutboxPosition> position();
@@ -90,16 +90,16 @@ class Forwarder {
   [[nodiscard]] Result<void> identify(OutgoingBatch& batch);
   [[nodiscard]] bool move_past(const OutgoingBatch& batch);
   [[nodiscard]] bool is_beyond_us(const OutgoingBatch& batch, const Sent& sent) const;
-  void tell_anew(const OutgoingBatch& batch, const Sent& sent);
-  void tell_of_anew(const std::string& why);
+  void resend_all(const OutgoingBatch& batch, const Sent& sent);
+  void report_resend(const std::string& why);
   [[nodiscard]] bool set_aside(const OutgoingBatch& batch, const std::string& why);
   void wait_after(const Sent& sent);
-  void tell_of_success();
+  void report_success();
 
   Ports ports_;
   Destination destination_;
   std::shared_ptr<Sink> sink_;  ///< Shared with the work in progress.
-  Tell tell_;
+  Notify notify_;
   ForwardRules rules_;
   int batch_;  ///< Entries at a time now: fewer after a refusal, to find what is refused.
   std::chrono::milliseconds wait_{0};  ///< After the last failure; zero: it did not fail.
@@ -107,7 +107,7 @@ class Forwarder {
   std::chrono::milliseconds anew_wait_{0};            ///< Before the next time, if that is soon.
   std::chrono::milliseconds not_before_{0};
   std::string why_;
-  std::optional<metering::Instant> told_at_;
+  std::optional<metering::Instant> sent_at_;
   bool is_sending_ = false;
   bool is_asked_ = false;  ///< try_now() during the attempt.
   std::optional<std::chrono::milliseconds> due_;

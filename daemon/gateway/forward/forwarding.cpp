@@ -73,7 +73,7 @@ Destination destination_of_fleet(const SiteConfig& site) {
 }
 
 mqtt::Session session_of(const SiteConfig& site) {
-  mqtt::Session session{.will = {}, .birth = {}, .topics = told_topics(site)};
+  mqtt::Session session{.will = {}, .birth = {}, .topics = meter_topics(site)};
   if (site.mqtt->publishes) {
     session.will = presence_message(site, false);
     session.birth = presence_message(site, true);
@@ -84,11 +84,11 @@ mqtt::Session session_of(const SiteConfig& site) {
 }  // namespace
 
 Forwarding::Forwarding(Ports ports, std::shared_ptr<const SiteConfig> site,
-                       metering::LocalCalendar calendar, Tell tell, OnValue on_value)
+                       metering::LocalCalendar calendar, Notify notify, OnValue on_value)
     : ports_(ports),
       site_(std::move(site)),
       calendar_(std::move(calendar)),
-      tell_(std::move(tell)),
+      notify_(std::move(notify)),
       on_value_(std::move(on_value)) {}
 
 Forwarding::~Forwarding() {
@@ -108,7 +108,7 @@ void Forwarding::start() {
 
 void Forwarding::set_site(std::shared_ptr<const SiteConfig> site) {
   const bool is_same_connection =
-      site_->mqtt == site->mqtt && told_topics(*site_) == told_topics(*site);
+      site_->mqtt == site->mqtt && meter_topics(*site_) == meter_topics(*site);
   const bool is_same_fleet = site_->fleet == site->fleet;
   site_ = std::move(site);
   if (!is_started_) return;
@@ -146,61 +146,62 @@ void Forwarding::begin_again_in_a_minute() {
 }
 
 void Forwarding::connect() {
-  auto opened = open_broker(site_->mqtt->broker, session_of(*site_), on_loop(&Forwarding::hear),
-                            on_loop(&Forwarding::hear_state));
+  auto opened =
+      open_broker(site_->mqtt->broker, session_of(*site_), on_loop(&Forwarding::on_message),
+                  on_loop(&Forwarding::on_broker_state));
   if (!opened) {
-    hear_state(false, opened.error().message);
+    on_broker_state(false, opened.error().message);
     return begin_again_in_a_minute();
   }
   link_ = std::make_shared<BrokerLink>(std::move(*opened));
 }
 
 void Forwarding::connect_to_fleet() {
-  auto opened = RecordLink::open(*site_->fleet, site_->id, on_loop(&Forwarding::hear_record),
-                                 on_loop(&Forwarding::hear_fleet_state));
+  auto opened = RecordLink::open(*site_->fleet, site_->id, on_loop(&Forwarding::on_record),
+                                 on_loop(&Forwarding::on_fleet_state));
   if (!opened) {
-    hear_fleet_state(false, opened.error().message);
+    on_fleet_state(false, opened.error().message);
     return begin_again_in_a_minute();
   }
   fleet_ = std::move(*opened);
 }
 
-void Forwarding::hear(const mqtt::Message& message) {
-  const ToldMessage told = read_told(*site_, message.topic, message.payload, message.is_retained,
-                                     ports_.loop.now().instant());
-  for (const ToldValue& value : told.values) on_value_(value);
+void Forwarding::on_message(const mqtt::Message& message) {
+  const MeterMessage parsed = parse_meter_message(*site_, message.topic, message.payload,
+                                                  message.is_retained, ports_.loop.now().instant());
+  for (const MqttValue& value : parsed.values) on_value_(value);
   const auto now = ports_.loop.now().monotonic;
-  for (const ToldRefusal& refusal : told.refusals) {
+  for (const MqttRefusal& refusal : parsed.refusals) {
     // Whoever sends nonsense ten times a second does not have it stored as often.
     const auto known = refused_at_.find(refusal.meter);
     if (known != refused_at_.end() && now - known->second < kRefusalsEvery) continue;
     refused_at_[refusal.meter] = now;
-    tell({.time = {},
-          .severity = Severity::warning,
-          .kind = "message_refused",
-          .subject = refusal.meter,
-          .text = refusal.why,
-          .is_counted = true});
+    notify({.time = {},
+            .severity = Severity::warning,
+            .kind = "message_refused",
+            .subject = refusal.meter,
+            .text = refusal.why,
+            .is_counted = true});
   }
 }
 
-void Forwarding::hear_state(bool is_connected, const std::string& why) {
+void Forwarding::on_broker_state(bool is_connected, const std::string& why) {
   if (!site_->mqtt) return;
   if (is_connected && why.empty() && state_) state_->begin_anew();
-  auto news = broker_news_.hear(broker_words(*site_->mqtt), is_connected, why);
-  if (news) tell(std::move(*news));
+  auto news = broker_news_.on_state(broker_words(*site_->mqtt), is_connected, why);
+  if (news) notify(std::move(*news));
 }
 
-void Forwarding::hear_record() {
+void Forwarding::on_record() {
   for (const auto& forwarder : forwarders_) {
     if (forwarder->destination().id == kFleet) forwarder->try_now();
   }
 }
 
-void Forwarding::hear_fleet_state(bool is_connected, const std::string& why) {
+void Forwarding::on_fleet_state(bool is_connected, const std::string& why) {
   if (!site_->fleet) return;
   const std::string words = "broker of the fleet at " + site_->fleet->where();
-  if (auto news = fleet_news_.hear(words, is_connected, why)) tell(std::move(*news));
+  if (auto news = fleet_news_.on_state(words, is_connected, why)) notify(std::move(*news));
 }
 
 /// A destination that is not reached yet is one: it is told later.
@@ -231,7 +232,7 @@ void Forwarding::add_forwarder(Destination destination, std::unique_ptr<Sink> si
   forwarders_.push_back(
       std::make_unique<Forwarder>(Forwarder::Ports{ports_.loop, ports_.store},
                                   std::make_unique<system::WorkerThread>(ports_.loop),
-                                  std::move(destination), std::move(sink), tell_, ports_.rules));
+                                  std::move(destination), std::move(sink), notify_, ports_.rules));
   forwarders_.back()->start();
 }
 
@@ -241,9 +242,9 @@ std::vector<DestinationStatus> Forwarding::status() const {
   return all;
 }
 
-void Forwarding::tell(StoreEvent event) {
+void Forwarding::notify(StoreEvent event) {
   event.time = ports_.loop.now().instant();
-  tell_(std::move(event));
+  notify_(std::move(event));
 }
 
 }  // namespace recald::daemon

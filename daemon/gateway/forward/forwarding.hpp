@@ -19,7 +19,7 @@
 #include "daemon/gateway/forward/forwarder.hpp"
 #include "daemon/gateway/forward/open_broker.hpp"
 #include "daemon/gateway/forward/record_link.hpp"
-#include "daemon/gateway/ingest/told_message.hpp"
+#include "daemon/gateway/ingest/meter_message.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
@@ -32,13 +32,13 @@ class Forwarding {
     bool is_on_disk = true;   ///< Of the store: what is only in memory is told once it is on disk.
     ForwardRules rules = {};  ///< Of every destination.
   };
-  using Tell = std::function<void(StoreEvent)>;
-  using OnValue = std::function<void(const ToldValue&)>;
+  using Notify = std::function<void(StoreEvent)>;
+  using OnValue = std::function<void(const MqttValue&)>;
 
   /// @param tell      Adds an event.
   /// @param on_value  Called on the loop's thread for each value of a meter.
   Forwarding(Ports ports, std::shared_ptr<const SiteConfig> site, metering::LocalCalendar calendar,
-             Tell tell, OnValue on_value);
+             Notify notify, OnValue on_value);
   ~Forwarding();
   Forwarding(const Forwarding&) = delete;
   Forwarding& operator=(const Forwarding&) = delete;
@@ -62,12 +62,12 @@ class Forwarding {
   void connect_to_fleet();
   void keep_outbox();
   void add_forwarder(Destination destination, std::unique_ptr<Sink> sink);
-  void hear(const mqtt::Message& message);
-  void hear_state(bool is_connected, const std::string& why);
-  void hear_record();
-  void hear_fleet_state(bool is_connected, const std::string& why);
+  void on_message(const mqtt::Message& message);
+  void on_broker_state(bool is_connected, const std::string& why);
+  void on_record();
+  void on_fleet_state(bool is_connected, const std::string& why);
   void begin_again_in_a_minute();
-  void tell(StoreEvent event);
+  void notify(StoreEvent event);
 
   /// A function for other threads: calls a member on the loop's thread, while this lives.
   template <class... Arguments>
@@ -81,7 +81,7 @@ class Forwarding {
   Ports ports_;
   std::shared_ptr<const SiteConfig> site_;
   metering::LocalCalendar calendar_;
-  Tell tell_;
+  Notify notify_;
   OnValue on_value_;
   bool is_started_ = false;
   bool is_again_due_ = false;

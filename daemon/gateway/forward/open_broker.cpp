@@ -35,8 +35,8 @@ Result<std::unique_ptr<mqtt::Connection>> open_broker(const BrokerConfig& config
                                 std::move(on_state));
 }
 
-std::optional<StoreEvent> BrokerNews::hear(const std::string& words, bool is_connected,
-                                           const std::string& why) {
+std::optional<StoreEvent> BrokerNews::on_state(const std::string& words, bool is_connected,
+                                               const std::string& why) {
   StoreEvent event;
   event.severity = Severity::warning;
   event.subject = words;

@@ -23,8 +23,8 @@ class BrokerNews {
  public:
   /// As mqtt::Connection::OnState, or of an attempt to open. @param words  For people: "MQTT broker
   /// at broker.example.org:1883". @return an event without its time; nothing: it was told before.
-  [[nodiscard]] std::optional<StoreEvent> hear(const std::string& words, bool is_connected,
-                                               const std::string& why);
+  [[nodiscard]] std::optional<StoreEvent> on_state(const std::string& words, bool is_connected,
+                                                   const std::string& why);
 
  private:
   bool is_lost_ = false;

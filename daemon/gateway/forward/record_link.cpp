@@ -53,7 +53,7 @@ Result<std::shared_ptr<RecordLink>> RecordLink::open(const BrokerConfig& broker,
     heard->changed.notify_all();
     on_sign();
   };
-  const auto hear_state = [heard, on_state](bool is_connected, const std::string& why) {
+  const auto on_broker_state = [heard, on_state](bool is_connected, const std::string& why) {
     if (!is_connected) {
       const std::scoped_lock lock{heard->mutex};
       ++heard->losses;
@@ -63,7 +63,7 @@ Result<std::shared_ptr<RecordLink>> RecordLink::open(const BrokerConfig& broker,
   };
   auto connection =
       TRY(open_broker(broker, {.will = {}, .birth = {}, .topics = {record::watermark_topic(site)}},
-                      hear, hear_state));
+                      hear, on_broker_state));
   return std::shared_ptr<RecordLink>{
       new RecordLink{record::batch_topic(site), std::move(heard), std::move(connection)}};
 }

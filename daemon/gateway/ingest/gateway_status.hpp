@@ -61,7 +61,7 @@ struct DestinationStatus {
   std::string name;          ///< For people: "Prometheus at metrics.example.org".
   std::int64_t waiting = 0;  ///< Entries of the outbox that it has not had yet.
   std::string why = {};      ///< Why the last ones could not be sent; empty: nothing is wrong.
-  std::optional<metering::Instant> told_at = {};  ///< It last took some; nothing: not yet.
+  std::optional<metering::Instant> sent_at = {};  ///< It last took some; nothing: not yet.
 };
 
 struct GatewayStatus {

@@ -123,7 +123,8 @@ void MeterTrack::note_fault(const RegisterField& field, modbus::ValueFault fault
 StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                             PollTime poll, Instant at) {
   StoreBatch batch;
-  if (auto told = refusals_.take(read, result, at)) batch.events.push_back(std::move(*told));
+  if (auto reported = refusals_.take(read, result, at))
+    batch.events.push_back(std::move(*reported));
   if (!result) {
     note_failure(result.error());
     // A field that could not be read no longer has a current value.
@@ -149,7 +150,7 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   } else {
     if (power_kW && watch_) watch_->take_power({at, *power_kW});
     take_energy(batch, poll, at);
-    if (watch_) watch_->judge(batch, state_.settings, at);
+    if (watch_) watch_->evaluate(batch, state_.settings, at);
   }
   // Commit intervals together with the state that they were computed from.
   if (!batch.empty() && batch.registers.empty()) batch.registers.push_back({meter_.number, state_});

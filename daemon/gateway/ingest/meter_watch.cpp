@@ -13,7 +13,7 @@ std::chrono::seconds meter_silence_max(std::chrono::seconds interval, bool is_po
   return std::max<std::chrono::seconds>(2 * interval, std::chrono::minutes{30});
 }
 
-std::optional<StoreEvent> MeterWatch::judge(std::optional<Instant> heard_at, Instant now) {
+std::optional<StoreEvent> MeterWatch::evaluate(std::optional<Instant> heard_at, Instant now) {
   // Only a new value counts: whatever the clock does, it has another time than the last.
   const bool is_heard = heard_at && heard_at != heard_at_;
   if (is_heard) heard_at_ = heard_at;

@@ -29,8 +29,8 @@ class MeterWatch {
 
   /// @param heard_at  When it last gave a value, in this process; nothing: it has not yet.
   /// @return what has changed since the last call.
-  [[nodiscard]] std::optional<StoreEvent> judge(std::optional<metering::Instant> heard_at,
-                                                metering::Instant now);
+  [[nodiscard]] std::optional<StoreEvent> evaluate(std::optional<metering::Instant> heard_at,
+                                                   metering::Instant now);
 
   /// The time that the clock skipped is no silence.
   void clock_was_set() { since_.reset(); }

@@ -25,8 +25,8 @@ void PowerWatch::take_power(const metering::PowerSample& sample) {
 
 void PowerWatch::take_interval(const Reading& counted) { put(counted_, counted); }
 
-void PowerWatch::judge(StoreBatch& batch, const metering::CounterSettings& counter,
-                       metering::Instant at) {
+void PowerWatch::evaluate(StoreBatch& batch, const metering::CounterSettings& counter,
+                          metering::Instant at) {
   const metering::PowerCheckRules rules{
       .rated_kW = counter.rated_kW,
       .resolution_kWh = counter.resolution_kWh,

@@ -22,7 +22,7 @@ class PowerWatch {
 
   /// Adds the findings to the batch: intervals that replace booked ones, and events.
   /// @param counter  Current settings; the power is judged by its rating and resolution.
-  void judge(StoreBatch& batch, const metering::CounterSettings& counter, metering::Instant at);
+  void evaluate(StoreBatch& batch, const metering::CounterSettings& counter, metering::Instant at);
 
   void clock_was_set() { metering::forget_power(book_); }
 

@@ -11,7 +11,7 @@ namespace {
 
 using metering::Instant;
 
-constexpr std::chrono::hours kToldEvery{1};
+constexpr std::chrono::hours kReportEvery{1};
 /// Devices are busy now and then, and gateways miss some. Equals the longest wait between tries of
 /// refused registers.
 constexpr std::chrono::minutes kRefusalPatience{5};
@@ -68,9 +68,9 @@ std::optional<StoreEvent> RefusalWatch::refuse(Read& read, RefusedRegisters refu
   const Kind kind = kind_of(refused.exception);
   if (read.is_lasting || at - refused.since < kind.patience) return {};
   read.is_lasting = true;
-  read.is_told = read.told == Instant::min() || at - read.told >= kToldEvery;
-  if (!read.is_told) return {};
-  read.told = at;
+  read.is_reported = read.reported == Instant::min() || at - read.reported >= kReportEvery;
+  if (!read.is_reported) return {};
+  read.reported = at;
   return StoreEvent{.time = at,
                     .severity = Severity::warning,
                     .kind = std::string{kind.event},
@@ -82,7 +82,7 @@ std::optional<StoreEvent> RefusalWatch::refuse(Read& read, RefusedRegisters refu
 std::optional<StoreEvent> RefusalWatch::answer(Read& read, Instant at) const {
   const auto was_refused = std::exchange(read.refused, std::nullopt);
   read.is_lasting = false;
-  if (!was_refused || !std::exchange(read.is_told, false)) return {};
+  if (!was_refused || !std::exchange(read.is_reported, false)) return {};
   return StoreEvent{
       at, Severity::info, "registers_answer", meter_,
       fmt::format("meter '{}' answers again for registers {} to {}, for the first time since {}",

@@ -48,8 +48,8 @@ class RefusalWatch {
   struct Read {
     std::optional<RefusedRegisters> refused;  ///< Since its last answer.
     bool is_lasting = false;                  ///< Someone should look at it.
-    bool is_told = false;                     ///< This refusal was reported.
-    metering::Instant told = metering::Instant::min();
+    bool is_reported = false;                 ///< This refusal was reported.
+    metering::Instant reported = metering::Instant::min();
   };
 
   [[nodiscard]] std::optional<StoreEvent> refuse(Read& read, RefusedRegisters refused,

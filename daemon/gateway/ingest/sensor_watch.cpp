@@ -44,8 +44,8 @@ StoreEvent SensorWatch::event(Severity severity, std::string_view kind, std::str
           .is_counted = is_first_};  // a restart reports it again
 }
 
-std::vector<StoreEvent> SensorWatch::judge(std::span<const MeterProgress* const> channels,
-                                           Instant now) {
+std::vector<StoreEvent> SensorWatch::evaluate(std::span<const MeterProgress* const> channels,
+                                              Instant now) {
   is_first_ = !begun_;
   if (!begun_) begun_ = now;
   std::vector<std::string_view> silent;

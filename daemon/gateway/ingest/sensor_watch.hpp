@@ -36,8 +36,8 @@ class SensorWatch {
 
   /// @param channels  Of this sensor. For a pushed one, only quantities that it has sent before,
   ///                  and the dry bulb, can be missing.
-  [[nodiscard]] std::vector<StoreEvent> judge(std::span<const MeterProgress* const> channels,
-                                              metering::Instant now);
+  [[nodiscard]] std::vector<StoreEvent> evaluate(std::span<const MeterProgress* const> channels,
+                                                 metering::Instant now);
 
  private:
   [[nodiscard]] StoreEvent event(Severity severity, std::string_view kind, std::string text,

@@ -26,7 +26,7 @@ constexpr std::chrono::seconds kSensorClockSlew{2};
 /// A longer hole leaves no intervals: an event reports it, and a month of silence must not become
 /// thousands of rows in one commit.
 constexpr std::chrono::hours kWeatherHoleMax{24};
-constexpr std::chrono::hours kNotPlausibleToldEvery{1};
+constexpr std::chrono::hours kImplausibleReportEvery{1};
 constexpr double kRadianPerDegree = std::numbers::pi / 180.0;
 constexpr double kNoDirection = 1e-9;  // winds that cancel
 
@@ -99,7 +99,8 @@ WeatherTrack::Channel* WeatherTrack::channel_of(const std::string& field) {
 StoreBatch WeatherTrack::take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                               Instant at) {
   StoreBatch batch;
-  if (auto told = refusals_.take(read, result, at)) batch.events.push_back(std::move(*told));
+  if (auto reported = refusals_.take(read, result, at))
+    batch.events.push_back(std::move(*reported));
   if (!result) {
     for (const std::size_t i : read.fields) {
       Channel* const channel = channel_of(fields_[i].name);
@@ -131,16 +132,16 @@ StoreBatch WeatherTrack::take(const modbus::PlannedRead& read, const modbus::Rea
 void WeatherTrack::take_value(StoreBatch& batch, Channel& channel, double value, Instant at) {
   if (!weather::is_plausible(*channel.quantity, value)) {
     channel.since |= Reason::range;
-    return tell(batch, channel, value, at);
+    return notify(batch, channel, value, at);
   }
   channel.now = value;
   book(batch, channel, value, at);
 }
 
 /// Per sensor, this is at most one event a day, counted at most once an hour.
-void WeatherTrack::tell(StoreBatch& batch, Channel& channel, double value, Instant at) const {
-  if (channel.told != Instant::min() && at - channel.told < kNotPlausibleToldEvery) return;
-  channel.told = at;
+void WeatherTrack::notify(StoreBatch& batch, Channel& channel, double value, Instant at) const {
+  if (channel.reported != Instant::min() && at - channel.reported < kImplausibleReportEvery) return;
+  channel.reported = at;
   batch.events.push_back(
       {.time = at,
        .severity = Severity::warning,

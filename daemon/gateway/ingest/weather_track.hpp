@@ -57,13 +57,13 @@ class WeatherTrack {
     std::optional<double> now = {};
     metering::Instant relived_until =
         metering::Instant::min();  ///< Latest stamp before the clock was set back.
-    metering::Instant told = metering::Instant::min();  ///< Of an impossible value.
+    metering::Instant reported = metering::Instant::min();  ///< Of an impossible value.
   };
 
   [[nodiscard]] Channel* channel_of(const std::string& field);
   void take_value(StoreBatch& batch, Channel& channel, double value, metering::Instant at);
   void book(StoreBatch& batch, Channel& channel, double value, metering::Instant at) const;
-  void tell(StoreBatch& batch, Channel& channel, double value, metering::Instant at) const;
+  void notify(StoreBatch& batch, Channel& channel, double value, metering::Instant at) const;
   void put_states(StoreBatch& batch) const;
 
   std::string id_;

@@ -71,17 +71,17 @@ RegisterWatch::RegisterWatch(Loop& loop, Served served, Publish publish)
 
 void RegisterWatch::start() {
   renew();
-  look_anew_every_six_hours();
+  refresh_every_six_hours();
 }
 
-void RegisterWatch::look_again() {
+void RegisterWatch::refresh() {
   results_are_due_ = true;
   for (auto& [id, months] : months_) months.is_due = true;
 }
 
-void RegisterWatch::look_anew_every_six_hours() {
-  look_again();
-  loop_.after(kLookAnewEvery, alive_.guard([this] { look_anew_every_six_hours(); }));
+void RegisterWatch::refresh_every_six_hours() {
+  refresh();
+  loop_.after(kLookAnewEvery, alive_.guard([this] { refresh_every_six_hours(); }));
 }
 
 void RegisterWatch::renew() {

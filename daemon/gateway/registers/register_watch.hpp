@@ -31,7 +31,7 @@ class RegisterWatch {
   void start();
 
   /// A month was closed or a job has ended: months and results are read again.
-  void look_again();
+  void refresh();
 
   /// As of now, with what has been read so far.
   [[nodiscard]] SiteFacts facts() const { return facts_of(served_.status()); }
@@ -53,7 +53,7 @@ class RegisterWatch {
 
   void renew();
   void note_news(const GatewayStatus& status);
-  void look_anew_every_six_hours();
+  void refresh_every_six_hours();
   void read_results();
   void read_next();
   void read(const MeterConfig& config, MeterMonths& months);

@@ -46,7 +46,7 @@ CommitRules rules_for(const SiteConfig& site) {
 }
 
 /// @param events  Newest first.
-bool is_told_silent(const std::vector<StoreEvent>& events, const std::string& meter) {
+bool was_reported_silent(const std::vector<StoreEvent>& events, const std::string& meter) {
   const auto last = std::ranges::find_if(events, [&](const StoreEvent& event) {
     return event.subject == meter &&
            (event.kind == "meter_silent" || event.kind == "meter_answers");
@@ -66,7 +66,7 @@ Gateway::Gateway(const metering::LocalCalendar& calendar, const SiteConfig& site
           [this](const StoreBatch& batch, const CommitCounts& counts) {
             note_committed(batch, counts);
           },
-          [this](const std::string& why) { tell_of_refusal(why); }),
+          [this](const std::string& why) { report_refusal(why); }),
       keeper_(ports_.store, calendar, site.closing, ports_.time_zone_release) {}
 
 Gateway::~Gateway() = default;
@@ -76,7 +76,7 @@ Result<std::unique_ptr<Gateway>> Gateway::open(const SiteConfig& site,
                                                const GatewayPorts& ports, OnMonth on_month) {
   std::unique_ptr<Gateway> gateway{new Gateway{calendar, site, ports, std::move(on_month)}};
   gateway->buses_ = TRY(gateway->open_buses(site, {}));
-  gateway->told_ = TRY(gateway->open_told(site));
+  gateway->mqtt_meters_ = TRY(gateway->open_mqtt_meters(site));
   TRY(gateway->open_pushed(site));
   gateway->watch_meters_of(site);
   gateway->watch_sensors_of(site);
@@ -97,7 +97,7 @@ Result<std::vector<std::unique_ptr<LiveBus>>> Gateway::open_buses(
 }
 
 /// As registers: a counter in messages has the same faults as one that is polled.
-Result<std::vector<LiveMeter>> Gateway::open_told(const SiteConfig& site) {
+Result<std::vector<LiveMeter>> Gateway::open_mqtt_meters(const SiteConfig& site) {
   std::vector<LiveMeter> opened;
   for (const MeterConfig& config : site.meters) {
     if (config.source != MeterSource::mqtt) continue;
@@ -163,7 +163,7 @@ void Gateway::watch_meters_of(const SiteConfig& site) {
     const auto known_until =
         pushed == pushed_.end() ? std::nullopt : pushed->progress.known_until();
     watches.emplace(
-        id, MeterWatch{id, silence_max, known_until, events && is_told_silent(*events, id)});
+        id, MeterWatch{id, silence_max, known_until, events && was_reported_silent(*events, id)});
   }
   meter_watches_ = std::move(watches);
 }
@@ -236,9 +236,9 @@ Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory
 void Gateway::start() {
   watch_clock(ports_.loop.now());
   for (const auto& bus : buses_) start(*bus);
-  for (LiveMeter& meter : told_) note_doubt(meter);
+  for (LiveMeter& meter : mqtt_meters_) note_doubt(meter);
   close_months_every_hour();
-  judge_meters_every_minute();
+  evaluate_meters_every_minute();
 }
 
 void Gateway::start(LiveBus& bus) {
@@ -276,10 +276,10 @@ Result<void> Gateway::reload(const SiteConfig& site) {
       buses_.begin(), buses_.end(), [&](const auto& bus) { return bus->is_described_by(site); });
   const std::span kept{buses_.begin(), changed};
   auto opened = TRY(open_buses(site, kept));
-  auto told = TRY(open_told(site));
+  auto mqtt_meter = TRY(open_mqtt_meters(site));
   if (auto pushed = open_pushed(site); !pushed) return pushed;
-  told_ = std::move(told);
-  for (LiveMeter& meter : told_) note_doubt(meter);
+  mqtt_meters_ = std::move(mqtt_meter);
+  for (LiveMeter& meter : mqtt_meters_) note_doubt(meter);
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
   begin_buses_anew();                   // those that are kept
   // Held reads were planned with the old descriptions, which may have changed.
@@ -303,7 +303,7 @@ LiveMeter* Gateway::find_meter(std::uint32_t number) {
       if (std::ranges::any_of(meter.progress, is_it)) return &meter;
     }
   }
-  for (LiveMeter& meter : told_) {
+  for (LiveMeter& meter : mqtt_meters_) {
     if (std::ranges::any_of(meter.progress, is_it)) return &meter;
   }
   return nullptr;
@@ -316,7 +316,7 @@ std::vector<MeterProgress*> Gateway::all_progress() {
       for (MeterProgress& progress : meter.progress) all.push_back(&progress);
     }
   }
-  for (LiveMeter& meter : told_) all.push_back(&meter.progress.front());
+  for (LiveMeter& meter : mqtt_meters_) all.push_back(&meter.progress.front());
   for (PushedMeter& meter : pushed_) all.push_back(&meter.progress);
   return all;
 }
@@ -348,7 +348,7 @@ void Gateway::watch_clock(const Moment& now) {
   for (const auto& bus : buses_) {
     for (LiveMeter& meter : bus->meters()) meter.clock_was_set();
   }
-  for (LiveMeter& meter : told_) meter.clock_was_set();
+  for (LiveMeter& meter : mqtt_meters_) meter.clock_was_set();
   for (auto& [meter, watch] : meter_watches_) watch.clock_was_set();
   note({now.instant(), Severity::warning, "clock_set", "",
         fmt::format(
@@ -365,7 +365,7 @@ void Gateway::release_held(const Moment& now) {
   }
 }
 
-void Gateway::hand_in(StoreBatch batch) {
+void Gateway::submit(StoreBatch batch) {
   if (ports_.on_event) std::ranges::for_each(batch.events, ports_.on_event);
   committer_.add(std::move(batch));
 }
@@ -383,32 +383,33 @@ void Gateway::take(LiveMeter& meter, const PolledRead& read) {
 void Gateway::take_at(LiveMeter& meter, const PolledRead& read, Instant at) {
   StoreBatch batch = meter.take(read, at);
   meter.progress.front().mark_late(batch, calendar_);
-  hand_in(std::move(batch));
+  submit(std::move(batch));
 }
 
-Result<bool> Gateway::take_told(const ToldValue& value) {
-  const auto told = std::ranges::find(told_, value.meter, &LiveMeter::id);
+Result<bool> Gateway::accept_mqtt(const MqttValue& value) {
+  const auto mqtt_meter = std::ranges::find(mqtt_meters_, value.meter, &LiveMeter::id);
   const auto is_it = [&](const modbus::PlannedRead& read) {
-    const modbus::RegisterMap& map = told->config.map;
+    const modbus::RegisterMap& map = mqtt_meter->config.map;
     const std::string field = metered_fields(map)[read.fields.front()].name;
     return value.is_counter ? field == map.energy.front() : map.power == field;
   };
-  const auto read = told == told_.end() ? std::vector<modbus::PlannedRead>::iterator{}
-                                        : std::ranges::find_if(told->reads, is_it);
-  if (told == told_.end() || read == told->reads.end()) {
+  const auto read = mqtt_meter == mqtt_meters_.end()
+                        ? std::vector<modbus::PlannedRead>::iterator{}
+                        : std::ranges::find_if(mqtt_meter->reads, is_it);
+  if (mqtt_meter == mqtt_meters_.end() || read == mqtt_meter->reads.end()) {
     return failure(ErrorCode::not_found,
                    fmt::format("no such value of meter '{}' is told", value.meter));
   }
   const Moment now = ports_.loop.now();
   watch_clock(now);
   const Instant at = value.measured.value_or(now.instant());
-  const MeterTrack& track = std::get<MeterTrack>(told->track);
-  const bool makes_intervals = value.is_counter || told->config.map.energy.empty();
+  const MeterTrack& track = std::get<MeterTrack>(mqtt_meter->track);
+  const bool makes_intervals = value.is_counter || mqtt_meter->config.map.energy.empty();
   const bool is_late = makes_intervals ? at <= track.last_sample().value_or(Instant::min())
                                        : at < track.live().read_at.value_or(Instant::min());
   if (value.measured && is_late) return false;
   PolledRead polled{.order = {.unit = 0,
-                              .read = static_cast<std::size_t>(read - told->reads.begin()),
+                              .read = static_cast<std::size_t>(read - mqtt_meter->reads.begin()),
                               .request = {},
                               .timeout = {},
                               .due = value.measured ? WallTime{at} : now.wall,
@@ -418,9 +419,9 @@ Result<bool> Gateway::take_told(const ToldValue& value) {
                     .duration = {},
                     .at = now};
   if (value.measured) {
-    take_at(*told, polled, at);
+    take_at(*mqtt_meter, polled, at);
   } else {
-    take(*told, polled);
+    take(*mqtt_meter, polled);
   }
   return true;
 }
@@ -444,14 +445,14 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
   const Instant now = ports_.loop.now().instant();
   auto counts = commit_pushed(batch, correction, now);
   if (!counts) {
-    if (counts.error().code == ErrorCode::io_failed) tell_of_refusal(counts.error().message);
+    if (counts.error().code == ErrorCode::io_failed) report_refusal(counts.error().message);
     return counts;
   }
-  if (!committer_.health().is_degraded) tell_of_refusal("");
+  if (!committer_.health().is_degraded) report_refusal("");
   pushed->heard_at = now;
   if (counts->taken > 0) pushed->taken_at = now;
   note_committed(batch, *counts);
-  tell_of_pushed(meter, *counts, correction, now);
+  report_pushed(meter, *counts, correction, now);
   return counts;
 }
 
@@ -473,8 +474,8 @@ Result<CommitCounts> Gateway::commit_pushed(StoreBatch& batch,
   return counts;
 }
 
-void Gateway::tell_of_pushed(const std::string& meter, const CommitCounts& counts,
-                             const std::optional<Correction>& correction, Instant now) {
+void Gateway::report_pushed(const std::string& meter, const CommitCounts& counts,
+                            const std::optional<Correction>& correction, Instant now) {
   if (!counts.conflicts.empty()) {
     note({.time = now,
           .severity = Severity::warning,
@@ -494,17 +495,18 @@ void Gateway::tell_of_pushed(const std::string& meter, const CommitCounts& count
 }
 
 /// A disk that refuses every other commit is told of once an hour.
-void Gateway::tell_of_refusal(const std::string& why) {
+void Gateway::report_refusal(const std::string& why) {
   const Moment now = ports_.loop.now();
   if (!why.empty()) {
-    if (refusal_told_at_ && now.monotonic - *refusal_told_at_ < kRefusedReadingsEvery) return;
-    refusal_told_at_ = now.monotonic;
-    is_refusal_told_ = true;
+    if (refusal_reported_at_ && now.monotonic - *refusal_reported_at_ < kRefusedReadingsEvery)
+      return;
+    refusal_reported_at_ = now.monotonic;
+    is_refusal_reported_ = true;
     note({now.instant(), Severity::error, "store_refuses", "",
           fmt::format("the store accepts no data ({}); recald keeps a day of readings in memory "
                       "and tries again",
                       why)});
-  } else if (std::exchange(is_refusal_told_, false)) {
+  } else if (std::exchange(is_refusal_reported_, false)) {
     note({now.instant(), Severity::info, "store_accepts", "",
           "the store accepts data again; the readings kept in memory are stored"});
   }
@@ -579,42 +581,42 @@ void Gateway::close_months_every_hour() {
   close_months();
   ports_.loop.after(kMonthsEvery, alive_.guard([this] {
     // Not at the start: sensors that seem silent have not been asked yet.
-    judge_sensors();
+    evaluate_sensors();
     close_months_every_hour();
   }));
 }
 
-void Gateway::judge_meters_every_minute() {
-  judge_meters();
-  ports_.loop.after(kMetersEvery, alive_.guard([this] { judge_meters_every_minute(); }));
+void Gateway::evaluate_meters_every_minute() {
+  evaluate_meters();
+  ports_.loop.after(kMetersEvery, alive_.guard([this] { evaluate_meters_every_minute(); }));
 }
 
-void Gateway::judge_meters() {
+void Gateway::evaluate_meters() {
   const CommitHealth& store = committer_.health();
-  if (store.is_degraded && !is_refusal_told_) tell_of_refusal(store.why);
+  if (store.is_degraded && !is_refusal_reported_) report_refusal(store.why);
   watch_clock(ports_.loop.now());
   if (!clock_ok_) return;
   const Instant now = ports_.loop.now().instant();
   const auto judge = [&](const std::string& meter, std::optional<Instant> heard_at) {
     const auto watch = meter_watches_.find(meter);
     if (watch == meter_watches_.end()) return;
-    if (auto event = watch->second.judge(heard_at, now)) note(std::move(*event));
+    if (auto event = watch->second.evaluate(heard_at, now)) note(std::move(*event));
   };
   for (const auto& bus : buses_) {
     for (const LiveMeter& meter : bus->meters()) {
       const auto* const track = std::get_if<MeterTrack>(&meter.track);
-      if (track != nullptr) judge(meter.id, track->live().measured_at);
+      if (track != nullptr) evaluate(meter.id, track->live().measured_at);
     }
   }
-  for (const LiveMeter& meter : told_) {
-    judge(meter.id, std::get<MeterTrack>(meter.track).live().measured_at);
+  for (const LiveMeter& meter : mqtt_meters_) {
+    evaluate(meter.id, std::get<MeterTrack>(meter.track).live().measured_at);
   }
   for (const PushedMeter& meter : pushed_) {
-    if (!meter.progress.channel) judge(meter.progress.stored.meter.id, meter.taken_at);
+    if (!meter.progress.channel) evaluate(meter.progress.stored.meter.id, meter.taken_at);
   }
 }
 
-void Gateway::judge_sensors() {
+void Gateway::evaluate_sensors() {
   watch_clock(ports_.loop.now());
   if (!clock_ok_) return;
   for (auto& [sensor, watch] : watches_) {
@@ -622,7 +624,7 @@ void Gateway::judge_sensors() {
     for (const MeterProgress* const progress : all_progress()) {
       if (progress->channel && progress->channel->sensor == sensor) channels.push_back(progress);
     }
-    hand_in({.events = watch.judge(channels, ports_.loop.now().instant())});
+    submit({.events = watch.evaluate(channels, ports_.loop.now().instant())});
   }
 }
 
@@ -640,7 +642,7 @@ GatewayStatus Gateway::status() const {
       status.meters.push_back(status_of(*bus, unit, *runner));
     }
   }
-  for (const LiveMeter& meter : told_) status.meters.push_back(status_of(meter));
+  for (const LiveMeter& meter : mqtt_meters_) status.meters.push_back(status_of(meter));
   for (const PushedMeter& meter : pushed_) {
     if (!meter.progress.channel) status.meters.push_back(status_of(meter));
   }
@@ -661,9 +663,9 @@ std::optional<MeterStatus> Gateway::meter_status(std::string_view id) const {
       return status_of(*bus, static_cast<std::size_t>(found - meters.begin()), *runner);
     }
   }
-  const auto told =
-      std::ranges::find(told_, id, [](const LiveMeter& one) { return std::string_view{one.id}; });
-  if (told != told_.end()) return status_of(*told);
+  const auto mqtt_meter = std::ranges::find(
+      mqtt_meters_, id, [](const LiveMeter& one) { return std::string_view{one.id}; });
+  if (mqtt_meter != mqtt_meters_.end()) return status_of(*mqtt_meter);
   const auto watch = watches_.find(std::string{id});
   if (watch != watches_.end() && !watch->second.is_polled()) {
     return status_of_pushed_sensor(watch->first);
@@ -703,14 +705,14 @@ MeterStatus Gateway::status_of(const LiveBus& bus, std::size_t unit,
   return status;
 }
 
-MeterStatus Gateway::status_of(const LiveMeter& told) const {
-  LiveValues live = std::get<MeterTrack>(told.track).live();
+MeterStatus Gateway::status_of(const LiveMeter& mqtt_meter) const {
+  LiveValues live = std::get<MeterTrack>(mqtt_meter.track).live();
   // Nobody says that a power has gone out of date.
   const bool is_current =
-      live.read_at && ports_.loop.now().instant() - *live.read_at <= 2 * told.config.poll;
+      live.read_at && ports_.loop.now().instant() - *live.read_at <= 2 * mqtt_meter.config.poll;
   if (!is_current) live.power_kW.reset();
-  const MeterProgress& progress = told.progress.front();
-  return {.id = told.id,
+  const MeterProgress& progress = mqtt_meter.progress.front();
+  return {.id = mqtt_meter.id,
           .poll = std::nullopt,
           .live = live,
           .last_interval = progress.last_interval,

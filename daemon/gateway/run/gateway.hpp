@@ -23,9 +23,9 @@
 #include "daemon/gateway/ingest/committer.hpp"
 #include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
+#include "daemon/gateway/ingest/meter_message.hpp"
 #include "daemon/gateway/ingest/meter_watch.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
-#include "daemon/gateway/ingest/told_message.hpp"
 #include "daemon/gateway/run/live_bus.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -94,10 +94,10 @@ class Gateway {
   /// Takes a value of a meter with source = "mqtt". One that is not later than the last is left
   /// out: a broker may deliver twice, and out of order.
   /// @return whether it was taken; not_found for a meter that lacks such a value.
-  [[nodiscard]] Result<bool> take_told(const ToldValue& value);
+  [[nodiscard]] Result<bool> accept_mqtt(const MqttValue& value);
 
   /// Adds an event for people to find.
-  void note(StoreEvent event) { hand_in({.events = {std::move(event)}}); }
+  void note(StoreEvent event) { submit({.events = {std::move(event)}}); }
 
   /// Counts an event that somebody else has stored.
   void count_stored(const StoreEvent& event);
@@ -133,7 +133,7 @@ class Gateway {
   void start(LiveBus& bus);
   [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
   /// Opens the meters with source = "mqtt"; those that are described as before go on.
-  [[nodiscard]] Result<std::vector<LiveMeter>> open_told(const SiteConfig& site);
+  [[nodiscard]] Result<std::vector<LiveMeter>> open_mqtt_meters(const SiteConfig& site);
   void note_doubt(LiveMeter& meter);
   /// Opens the pushed meters and weather sensors of `site`; those already open keep their state.
   Result<void> open_pushed(const SiteConfig& site);
@@ -141,9 +141,9 @@ class Gateway {
   /// Meters and weather sensors that stay are watched further.
   void watch_meters_of(const SiteConfig& site);
   void watch_sensors_of(const SiteConfig& site);
-  void judge_meters_every_minute();
-  void judge_meters();
-  void judge_sensors();
+  void evaluate_meters_every_minute();
+  void evaluate_meters();
+  void evaluate_sensors();
   [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
   [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
@@ -153,7 +153,7 @@ class Gateway {
   [[nodiscard]] Result<void> take_over_intervals(MeterProgress& progress, Store& memory,
                                                  std::uint32_t number);
   /// Passes a batch to the committer.
-  void hand_in(StoreBatch batch);
+  void submit(StoreBatch batch);
   void take(LiveMeter& meter, const PolledRead& read);
   void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);
@@ -162,14 +162,14 @@ class Gateway {
   [[nodiscard]] Result<CommitCounts> commit_pushed(StoreBatch& batch,
                                                    const std::optional<Correction>& correction,
                                                    metering::Instant now);
-  void tell_of_pushed(const std::string& meter, const CommitCounts& counts,
-                      const std::optional<Correction>& correction, metering::Instant now);
+  void report_pushed(const std::string& meter, const CommitCounts& counts,
+                     const std::optional<Correction>& correction, metering::Instant now);
   /// @param why  Of the store; empty: it accepts again.
-  void tell_of_refusal(const std::string& why);
+  void report_refusal(const std::string& why);
   void note_committed(const StoreBatch& batch, const CommitCounts& counts);
   [[nodiscard]] MeterStatus status_of(const LiveBus& bus, std::size_t unit,
                                       const BusRunner& runner) const;
-  [[nodiscard]] MeterStatus status_of(const LiveMeter& told) const;
+  [[nodiscard]] MeterStatus status_of(const LiveMeter& mqtt_meter) const;
   [[nodiscard]] MeterStatus status_of(const PushedMeter& meter) const;
   [[nodiscard]] MeterStatus status_of_pushed_sensor(const std::string& sensor) const;
   void add_quantity(MeterStatus& status, const MeterProgress& progress,
@@ -188,14 +188,14 @@ class Gateway {
   MonthKeeper keeper_;
   std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
-  std::vector<LiveMeter> told_;  ///< With source = "mqtt".
+  std::vector<LiveMeter> mqtt_meters_;  ///< With source = "mqtt".
   std::vector<PushedMeter> pushed_;
   std::map<std::string, MeterWatch> meter_watches_;  ///< By id.
   std::map<std::string, SensorWatch> watches_;       ///< By id of the weather sensor.
   bool clock_ok_ = false;
-  std::array<std::uint64_t, 3> events_{};                     ///< Committed, by Severity.
-  std::optional<std::chrono::milliseconds> refusal_told_at_;  ///< By the monotonic clock.
-  bool is_refusal_told_ = false;                              ///< It goes on.
+  std::array<std::uint64_t, 3> events_{};                         ///< Committed, by Severity.
+  std::optional<std::chrono::milliseconds> refusal_reported_at_;  ///< By the monotonic clock.
+  bool is_refusal_reported_ = false;                              ///< It goes on.
   std::deque<HeldRead> held_;
   Alive alive_;
 };

@@ -29,7 +29,7 @@ Result<stores::CheckedStore> StoreOpener::try_to_open(const StoreConfig& config,
                                                       metering::Instant now,
                                                       const std::function<void()>& on_progress) {
   if (!lock_) {
-    lock_ = TRY(system::FileLock::take(config.file.string() + ".lock"));
+    lock_ = TRY(system::FileLock::acquire(config.file.string() + ".lock"));
   }
   return open_store(config, now, on_progress);
 }

@@ -99,7 +99,7 @@ class Service {
   /// @param opener, signals  Belong to the process; they outlive this.
   /// @param told             What an earlier service has told whom.
   Service(OpenSite site, const ServiceOptions& options, RunningStore store, StoreOpener& opener,
-          Signals& signals, Alerts::Told told)
+          Signals& signals, Alerts::Notified notified)
       : site_(std::move(site)),
         shared_site_(share(site_)),
         running_(std::move(store)),
@@ -117,13 +117,13 @@ class Service {
             {loop_, *store_, worker_}, make_site_work(shared_site_),
             [this](const StoredJob& job) {
               log_job(job);
-              if (facts_) facts_->look_again();
+              if (facts_) facts_->refresh();
             },
             [this](const StoreEvent& event) {
               gateway_->count_stored(event);
-              hear(event);
+              on_event(event);
             }),
-        weather_wait_({loop_, *store_, looker_}, make_weather_look(shared_site_),
+        weather_wait_({loop_, *store_, looker_}, make_weather_check(shared_site_),
                       [this] { calibrate_with_weather(); }),
         load_watch_(loop_, expecter_, make_load_expectation(shared_site_),
                     [this] { return jobs_.is_running(); }),
@@ -132,11 +132,11 @@ class Service {
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }),
         alerts_(
             {loop_, *store_, messenger_}, shared_config(), site_.calendar, deliver,
-            [this](StoreEvent event) { gateway_->note(std::move(event)); }, std::move(told)),
+            [this](StoreEvent event) { gateway_->note(std::move(event)); }, std::move(notified)),
         forwarding_(
             {loop_, *store_, running_.missing.empty()}, shared_config(), site_.calendar,
             [this](StoreEvent event) { gateway_->note(std::move(event)); },
-            [this](const ToldValue& value) { (void)gateway_->take_told(value); }) {}
+            [this](const MqttValue& value) { (void)gateway_->take_notified(value); }) {}
 
   /// @param memory  What an earlier service kept in memory; may be null.
   Result<void> open(Store* memory) {
@@ -151,10 +151,10 @@ class Service {
                        .time_zone_release = system::time_zone_release(),
                        .seed = std::random_device{}(),  // only for jitter, not for results
                        .is_clock_settling = options_.trial ? nullptr : system::is_clock_settling,
-                       .on_event = [this](const StoreEvent& event) { hear(event); }},
+                       .on_event = [this](const StoreEvent& event) { on_event(event); }},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
                         log_month(meter, figure);
-                        if (facts_) facts_->look_again();
+                        if (facts_) facts_->refresh();
                         recalibration_->month_closed(meter.id);
                       });
     if (!gateway) return tl::unexpected(gateway.error());
@@ -192,7 +192,7 @@ class Service {
     gateway_->start();
     weather_wait_.start();
     load_watch_.start();
-    tell_facts();
+    report_facts();
     alerts_.start();
     keep_up();
     if (!running_.missing.empty()) stand_in();
@@ -212,7 +212,7 @@ class Service {
   [[nodiscard]] std::optional<RunningStore> take_found() { return std::exchange(found_, {}); }
   /// The store with what was kept in memory.
   [[nodiscard]] std::unique_ptr<Store> take_store() { return std::move(running_.store); }
-  [[nodiscard]] Alerts::Told take_told() { return alerts_.take_told(); }
+  [[nodiscard]] Alerts::Notified take_notified() { return alerts_.take_notified(); }
   [[nodiscard]] const OpenSite& site() const { return site_; }
   /// Whether the site's store is being opened on another thread; destroying this waits for it.
   [[nodiscard]] bool is_opening() const { return is_opening_; }
@@ -287,7 +287,7 @@ class Service {
   }
 
   /// For management systems and brokers, if the site has any.
-  void tell_facts() {
+  void report_facts() {
     const bool is_wanted = registers_ || (site_.config.mqtt && site_.config.mqtt->publishes);
     if (!is_wanted || facts_) return;
     facts_ = std::make_unique<RegisterWatch>(loop_, served(), [this](const SiteFacts& facts) {
@@ -362,12 +362,12 @@ class Service {
     site_.config = std::move(*config);
     shared_site_ = share(site_);
     jobs_.set_work(make_site_work(shared_site_));
-    weather_wait_.set_look(make_weather_look(shared_site_));
+    weather_wait_.set_check(make_weather_check(shared_site_));
     load_watch_.set_expect(make_load_expectation(shared_site_));
     alerts_.set_site(shared_config());
     forwarding_.set_site(shared_config());
-    tell_facts();
-    if (facts_) facts_->look_again();
+    report_facts();
+    if (facts_) facts_->refresh();
     schedule();
     // A month that closed within the last minute would have been requested by the old schedule.
     catch_up();
@@ -408,7 +408,7 @@ class Service {
         figure.coverage);
   }
 
-  void hear(const StoreEvent& event) {
+  void on_event(const StoreEvent& event) {
     log_event(event);
     alerts_.heard(event);
   }
@@ -474,17 +474,17 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
   auto store = open_running_store(opener, site.config.store, now, extend_start);
   if (!store) return tl::unexpected(store.error());
   signals.hold_ends();
-  Alerts::Told told;
+  Alerts::Notified notified;
   for (std::unique_ptr<Store> memory;;) {
     auto service = std::make_unique<Service>(std::move(site), options, std::move(*store), opener,
-                                             signals, std::exchange(told, {}));
+                                             signals, std::exchange(notified, {}));
     if (auto opened = service->open(memory.get()); !opened) {
       if (!memory) return opened;
       // The readings in memory exist nowhere else: continue with them, and try again later.
       spdlog::error("event=not_taken_over why=\"{}\"", opened.error().message);
       opener.back_off();
       site = service->site();
-      told = service->take_told();
+      notified = service->take_notified();
       store = RunningStore{std::move(memory), opened.error().message};
       continue;
     }
@@ -495,7 +495,7 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
     if (service->is_opening()) leave_at_once(ended);
     if (!found) return ended;
     site = service->site();
-    told = service->take_told();
+    notified = service->take_notified();
     memory = service->take_store();
     store = std::move(*found);
   }

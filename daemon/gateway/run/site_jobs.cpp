@@ -11,8 +11,8 @@
 #include "adapters/results/job_result_json.hpp"
 #include "adapters/system/write_file.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"
-#include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/calibrate/calibration_on_design.hpp"
+#include "daemon/site/calibrate/finished_calibration.hpp"
 #include "daemon/site/diagnose/proposed_version.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/drift/site_drift.hpp"
@@ -214,7 +214,7 @@ Result<JobOutcome> with_known_weather(const Error& error, const SharedSite& shar
   const metering::Month last = metering::previous_month(site.calendar.month_of(now));
   const metering::MonthRange months{
       last - std::chrono::months{site.config.recalibration.months - 1}, last};
-  auto known = make_weather_look(shared)(months);
+  auto known = make_weather_check(shared)(months);
   if (!known) {  // the file may be just being written: nothing is known
     known.emplace();
     for (metering::Month month = months.first; month <= last; month = metering::next_month(month)) {
@@ -307,7 +307,7 @@ DoJob make_site_work(SharedSite site, const CalibrateOptions& options) {
   };
 }
 
-LookAtWeather make_weather_look(SharedSite site) {
+CheckWeather make_weather_check(SharedSite site) {
   return [site = std::move(site)](
              const metering::MonthRange& months) -> Result<std::vector<MonthWeather>> {
     if (!site->config.weather) return std::vector<MonthWeather>{};

@@ -18,6 +18,6 @@ namespace recald::daemon {
 [[nodiscard]] DoJob make_site_work(SharedSite site, const CalibrateOptions& options = {});
 
 /// Reads what the site's weather file and sensors have now, in the same way.
-[[nodiscard]] LookAtWeather make_weather_look(SharedSite site);
+[[nodiscard]] CheckWeather make_weather_check(SharedSite site);
 
 }  // namespace recald::daemon

@@ -44,7 +44,7 @@ bool has_recent_lack(const std::vector<MonthWeather>& months, metering::Instant 
 }
 
 /// An exception while looking counts as no weather.
-Result<std::vector<MonthWeather>> look_safely(const LookAtWeather& look,
+Result<std::vector<MonthWeather>> look_safely(const CheckWeather& look,
                                               const metering::MonthRange& months) {
   try {
     return look(months);
@@ -55,14 +55,14 @@ Result<std::vector<MonthWeather>> look_safely(const LookAtWeather& look,
 
 }  // namespace
 
-WeatherWait::WeatherWait(Ports ports, LookAtWeather look, std::function<void()> ask)
+WeatherWait::WeatherWait(Ports ports, CheckWeather look, std::function<void()> ask)
     : ports_(ports), look_(std::move(look)), ask_(std::move(ask)) {}
 
-void WeatherWait::start() { look_every_hour(); }
+void WeatherWait::start() { check_every_hour(); }
 
-void WeatherWait::look_every_hour() {
-  look_again();
-  ports_.loop.after(kLookEvery, alive_.guard([this] { look_every_hour(); }));
+void WeatherWait::check_every_hour() {
+  refresh();
+  ports_.loop.after(kLookEvery, alive_.guard([this] { check_every_hour(); }));
 }
 
 /// Nothing while a calibration waits or runs: it will see the new weather. One that was cancelled,
@@ -83,7 +83,7 @@ std::optional<WeatherWait::Known> WeatherWait::last_known() const {
   return {};
 }
 
-void WeatherWait::look_again() {
+void WeatherWait::refresh() {
   if (is_looking_) return;
   auto known = last_known();
   if (!known || std::ranges::none_of(known->months, is_lacking)) return;

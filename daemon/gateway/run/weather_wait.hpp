@@ -17,7 +17,7 @@
 namespace recald::daemon {
 
 /// How much of the weather of these months is known now. Called on the worker; may be slow.
-using LookAtWeather =
+using CheckWeather =
     std::function<Result<std::vector<MonthWeather>>(const metering::MonthRange& months)>;
 
 /// Checks once an hour, as long as the newest calibration has months with incomplete weather; once
@@ -30,14 +30,14 @@ class WeatherWait {
     Store& store;
     Worker& worker;
   };
-  WeatherWait(Ports ports, LookAtWeather look, std::function<void()> ask);
+  WeatherWait(Ports ports, CheckWeather look, std::function<void()> ask);
   ~WeatherWait() = default;
   WeatherWait(const WeatherWait&) = delete;
   WeatherWait& operator=(const WeatherWait&) = delete;
 
   void start();
   /// Replaces the look-up, for another site file.
-  void set_look(LookAtWeather look) {
+  void set_check(CheckWeather look) {
     look_ = std::move(look);
     looked_at_.reset();
   }
@@ -50,13 +50,13 @@ class WeatherWait {
     std::vector<MonthWeather> months;
   };
 
-  void look_every_hour();
-  void look_again();
+  void check_every_hour();
+  void refresh();
   [[nodiscard]] std::optional<Known> last_known() const;
   void compare(const Known& then, std::vector<MonthWeather> now);
 
   Ports ports_;
-  LookAtWeather look_;
+  CheckWeather look_;
   std::function<void()> ask_;
   bool is_looking_ = false;
   std::optional<std::chrono::milliseconds> looked_at_;  ///< Monotonic.

@@ -31,7 +31,7 @@ Upkeep::Upkeep(Store& store, Worker& checker, StoreConfig config, metering::Loca
       checker_(checker),
       config_(std::move(config)),
       calendar_(std::move(calendar)),
-      tell_(std::move(tell)),
+      notify_(std::move(tell)),
       rules_(rules),
       reserve_(
           std::make_shared<system::ReservedSpace>(reserve_file(config_), rules.reserve_bytes)) {
@@ -166,7 +166,7 @@ milliseconds Upkeep::until_next(Instant now) const {
 void Upkeep::tell(Instant now, std::string& known, const char* kind, const std::string& sentence,
                   Severity severity) const {
   if (std::exchange(known, sentence) == sentence) return;
-  tell_({now, severity, kind, "", sentence});
+  notify_({now, severity, kind, "", sentence});
 }
 
 }  // namespace recald::daemon

@@ -69,7 +69,7 @@ class Upkeep {
   Worker& checker_;
   StoreConfig config_;
   metering::LocalCalendar calendar_;
-  std::function<void(StoreEvent)> tell_;
+  std::function<void(StoreEvent)> notify_;
   UpkeepRules rules_;
   std::shared_ptr<system::ReservedSpace> reserve_;
   std::shared_ptr<StoreBackup> backup_;  ///< In progress; shared with the checker while it checks.

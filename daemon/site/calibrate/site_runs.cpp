@@ -148,7 +148,7 @@ Result<void> require_runs_of(const ModelConfig& model) {
 
 Result<system::FileLock> lock_runs(const std::filesystem::path& folder) {
   TRY(system::make_folder(folder));
-  auto lock = system::FileLock::take(folder / "lock");
+  auto lock = system::FileLock::acquire(folder / "lock");
   if (lock || lock.error().code != ErrorCode::unsupported) return lock;
   return failure(
       ErrorCode::unsupported,

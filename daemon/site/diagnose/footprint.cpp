@@ -77,16 +77,16 @@ Result<void> check(const csv::ReadingsReport& report, const csv::ReadingsOptions
 Result<void> require_whole_hours(const FootprintHours& hours, const diagnosis::SiteProblem& site,
                                  const csv::ReadingsOptions& options, const std::string& name) {
   const auto whole_s = static_cast<double>(kOneHour.count());
-  for (Eigen::Index meter = 0; meter < hours.told_s().cols(); ++meter) {
-    for (Eigen::Index i = 0; i < hours.told_s().rows(); ++i) {
-      const double told_s = hours.told_s()(i, meter);
-      if (told_s == 0.0 || told_s == whole_s) continue;
+  for (Eigen::Index meter = 0; meter < hours.covered_s().cols(); ++meter) {
+    for (Eigen::Index i = 0; i < hours.covered_s().rows(); ++i) {
+      const double covered_s = hours.covered_s()(i, meter);
+      if (covered_s == 0.0 || covered_s == whole_s) continue;
       return failure(
           ErrorCode::malformed,
           fmt::format(
               "{}: meter '{}' has rows for {:.0f} of the 60 minutes from {}; give each hour "
               "whole, with 0 where nothing changes, or not at all",
-              name, options.meters[static_cast<std::size_t>(meter)].name, told_s / 60.0,
+              name, options.meters[static_cast<std::size_t>(meter)].name, covered_s / 60.0,
               metering::to_string(site.drivers->hours[static_cast<std::size_t>(i)].start)));
     }
   }
@@ -99,7 +99,7 @@ FootprintHours::FootprintHours(const diagnosis::SiteProblem& site)
     : drivers_(*site.drivers),
       hours_kW_(Eigen::ArrayXXd::Zero(static_cast<Eigen::Index>(drivers_.hours.size()),
                                       static_cast<Eigen::Index>(site.meters.size()))),
-      told_s_(Eigen::ArrayXXd::Zero(hours_kW_.rows(), hours_kW_.cols())) {}
+      covered_s_(Eigen::ArrayXXd::Zero(hours_kW_.rows(), hours_kW_.cols())) {}
 
 void FootprintHours::add(Eigen::Index meter, metering::Instant start, seconds length,
                          double mean_kW) {
@@ -111,7 +111,7 @@ void FootprintHours::add(Eigen::Index meter, metering::Instant start, seconds le
     const auto row = hour - drivers_.hours.begin();
     const auto overlap_s = static_cast<double>(overlap.count());
     hours_kW_(row, meter) += mean_kW * overlap_s / static_cast<double>(kOneHour.count());
-    told_s_(row, meter) += overlap_s;
+    covered_s_(row, meter) += overlap_s;
     meets_site_ = true;
   }
 }

@@ -24,14 +24,14 @@ class FootprintHours {
 
   [[nodiscard]] const Eigen::ArrayXXd& hours_kW() const { return hours_kW_; }  ///< (hours x m)
   /// (hours x m) how much of each hour was added, in seconds.
-  [[nodiscard]] const Eigen::ArrayXXd& told_s() const { return told_s_; }
+  [[nodiscard]] const Eigen::ArrayXXd& covered_s() const { return covered_s_; }
   /// Whether anything was added that lies within the site's hours.
   [[nodiscard]] bool meets_site() const { return meets_site_; }
 
  private:
   const model::Drivers& drivers_;
   Eigen::ArrayXXd hours_kW_;
-  Eigen::ArrayXXd told_s_;
+  Eigen::ArrayXXd covered_s_;
   bool meets_site_ = false;
 };
 

@@ -106,7 +106,7 @@ Result<void> read_group(const SiteConfig& site, const FileGroup& group,
 }
 
 /// If the site file describes zero readings, they are not reported.
-bool is_told_of_zeros(const MeterRecord& record) { return record.meter.zero_run_max.has_value(); }
+bool expects_zero_runs(const MeterRecord& record) { return record.meter.zero_run_max.has_value(); }
 
 /// What one meter's closed months show besides their figures.
 class SlotRecord {
@@ -123,7 +123,7 @@ class SlotRecord {
   void describe(const std::vector<metering::MonthlyFigure>& figures,
                 const metering::LocalCalendar& calendar, MeterRecord& record,
                 Instant until = Instant::max()) const {
-    const auto zero_runs = is_told_of_zeros(record) ? std::vector<TimeSpan>{} : joined_zero_runs();
+    const auto zero_runs = expects_zero_runs(record) ? std::vector<TimeSpan>{} : joined_zero_runs();
     record.findings =
         metering::describe_data(record.meter.id, episodes_until(until, record.meter.interval),
                                 zero_runs, figures, record.level_changes, record.counts, calendar);

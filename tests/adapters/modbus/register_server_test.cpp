@@ -293,8 +293,8 @@ TEST(RequestFrame, IsCutWhereItsHeaderSays) {
 TEST(RequestFrame, ALengthThatIsNotTheFunctionsIsRefused) {
   Bytes pdu = read_of(4, 0, 1);
   pdu.push_back(0);
-  EXPECT_EQ(judge_request(request(1, pdu), kRegisters), RequestVerdict::illegal_value);
-  EXPECT_EQ(judge_request(request(1, {4}), kRegisters), RequestVerdict::illegal_value);
+  EXPECT_EQ(check_request(request(1, pdu), kRegisters), RequestVerdict::illegal_value);
+  EXPECT_EQ(check_request(request(1, {4}), kRegisters), RequestVerdict::illegal_value);
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ inline RecordBatch intervals(std::int64_t after, int count, std::int64_t outbox 
 inline RecordBatch end_of_history(std::int64_t outbox) {
   return {.outbox = -outbox,
           .is_first = true,
-          .entries = {{.number = kHistoryTold,
+          .entries = {{.number = kHistorySent,
                        .meter = "",
                        .interval = std::chrono::seconds{1},
                        .stored = {}}}};

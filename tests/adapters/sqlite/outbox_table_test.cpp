@@ -73,8 +73,8 @@ TEST_F(OutboxTable, ADestinationIsToldWhatIsStoredFromThenOn) {
                               "2024a", kStart)
                   .has_value());
   const OutboxPosition position = store_->outbox_position("broker").value();
-  EXPECT_THAT(after(position.told), ElementsAre(2.0, 3.0, 240.0));
-  EXPECT_EQ(position.last - position.told, 3);
+  EXPECT_THAT(after(position.sent), ElementsAre(2.0, 3.0, 240.0));
+  EXPECT_EQ(position.last - position.sent, 3);
   EXPECT_EQ(wrong_sums(store_->database()).value(), "");
 }
 
@@ -86,12 +86,12 @@ TEST_F(OutboxTable, WhatEveryoneHasHadIsForgottenAndItsNumberNotGivenAgain) {
   ASSERT_THAT(entries, SizeIs(2));
   ASSERT_TRUE(store_->put_outbox_position("broker", entries[1].number).has_value());
   EXPECT_EQ(rows(), 2);  // the database has had none of them
-  EXPECT_THAT(after(store_->outbox_position("database")->told), ElementsAre(1.0, 2.0));
+  EXPECT_THAT(after(store_->outbox_position("database")->sent), ElementsAre(1.0, 2.0));
   ASSERT_TRUE(store_->put_outbox_position("database", entries[1].number).has_value());
   EXPECT_EQ(rows(), 0);
   reopen();
   store(2, 3.0);
-  EXPECT_THAT(after(store_->outbox_position("broker")->told), ElementsAre(3.0));
+  EXPECT_THAT(after(store_->outbox_position("broker")->sent), ElementsAre(3.0));
 }
 
 TEST_F(OutboxTable, ADestinationThatIsTakenOutHoldsNothingBack) {
@@ -101,7 +101,7 @@ TEST_F(OutboxTable, ADestinationThatIsTakenOutHoldsNothingBack) {
   ASSERT_TRUE(store_->keep_outbox_for({"broker"}).has_value());
   EXPECT_EQ(rows(), 0);
   store(1, 2.0);
-  EXPECT_THAT(after(store_->outbox_position("broker")->told), ElementsAre(2.0));
+  EXPECT_THAT(after(store_->outbox_position("broker")->sent), ElementsAre(2.0));
   ASSERT_TRUE(store_->keep_outbox_for({}).has_value());
   store(2, 3.0);
   EXPECT_EQ(rows(), 0);

@@ -61,7 +61,7 @@ std::vector<DailyAlarm> alarms_of(std::vector<WatchedDay> all, const DailyWatchO
   EXPECT_TRUE(watch.is_able());
   std::vector<DailyAlarm> alarms;
   for (int month = kLearning; month < kMonths; ++month) {
-    if (auto alarm = watch.look(month)) alarms.push_back(*alarm);
+    if (auto alarm = watch.evaluate(month)) alarms.push_back(*alarm);
   }
   return alarms;
 }
@@ -128,7 +128,7 @@ TEST(DailyWatch, TooLittleToLearnFromIsNotWatched) {
   }
   DailyWatch watch{std::move(all), kLearning, {}};
   EXPECT_FALSE(watch.is_able());
-  EXPECT_EQ(watch.look(kLearning), std::nullopt);
+  EXPECT_EQ(watch.evaluate(kLearning), std::nullopt);
 }
 
 // Whoever knows of a change says so: it raises nothing then.
@@ -138,7 +138,7 @@ TEST(DailyWatch, ABuildingThatBeganAnewIsLearntAnew) {
     DailyWatch watch{world(seed, 0.5, kFrom), kLearning, {}};
     for (int month = kLearning; month < kMonths; ++month) {
       if (month == 27) watch.begin_at(Day{first_day() + days{kFrom}}, 0.3);
-      EXPECT_FALSE(watch.look(month).has_value()) << seed << ' ' << month;
+      EXPECT_FALSE(watch.evaluate(month).has_value()) << seed << ' ' << month;
     }
   }
 }

@@ -338,7 +338,7 @@ rated_kW = 400
 
 TEST_F(DoctorCommand, ARunningDaemonIsAsked) {
   {
-    const auto lock = system::FileLock::take(path("site.db.lock"));
+    const auto lock = system::FileLock::acquire(path("site.db.lock"));
     ASSERT_TRUE(lock.has_value());
     EXPECT_EQ(facts().at("daemon"), "a recald runs on the store");  // on a port that nobody knows
     const RunningServer server{[](const http::Request& request) {
@@ -354,7 +354,7 @@ TEST_F(DoctorCommand, ARunningDaemonIsAsked) {
     EXPECT_EQ(facts().at("daemon"), "a recald runs on the store, answers: not_ready");
   }
   EXPECT_EQ(facts().at("daemon"), "not running");
-  const auto lock = system::FileLock::take(path("site.db.lock"));
+  const auto lock = system::FileLock::acquire(path("site.db.lock"));
   EXPECT_THAT(facts().at("daemon"), HasSubstr("a recald runs on the store, does not answer ! "));
   EXPECT_EQ(doctor().exit_code, 1);
 }

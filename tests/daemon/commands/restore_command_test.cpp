@@ -230,7 +230,7 @@ TEST_F(RestoreCommand, ADryRunAndAListChangeNothing) {
 
 TEST_F(RestoreCommand, NotWhileADaemonRunsOnTheStore) {
   const auto before = files_of(folder_ / "site");
-  const auto lock = system::FileLock::take(path("site.db.lock"));
+  const auto lock = system::FileLock::acquire(path("site.db.lock"));
   const auto refused = restore();
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("stop the daemon, restore, and start it again"));

@@ -56,7 +56,7 @@ constexpr const char* kHook = "[[alerts.webhook]]\nurl = \"http://localhost/hook
 class AlertsTest : public ::testing::Test {
  protected:
   void begin(const std::string& alerts) { begin(site_with(alerts)); }
-  void begin(const SiteConfig& site, Alerts::Told told = {}) {
+  void begin(const SiteConfig& site, Alerts::Notified told = {}) {
     alerts_ = std::make_unique<Alerts>(
         Alerts::Ports{loop_, failing_, worker_}, std::make_shared<const SiteConfig>(site),
         metering::LocalCalendar::open("Europe/Berlin").value(),
@@ -277,7 +277,7 @@ TEST_F(AlertsTest, WhatWasKeptInMemoryIsNotToldAgainFromTheStore) {
   const TemporaryFolder other;
   auto found = sqlite::SqliteStore::open(other / "site.db").value();
   ASSERT_TRUE(found.commit({.events = store_.events_after(0, 100).value()}).has_value());
-  auto told = alerts_->take_told();
+  auto told = alerts_->take_notified();
   alerts_ = std::make_unique<Alerts>(
       Alerts::Ports{loop_, found, worker_}, std::make_shared<const SiteConfig>(site_with(kMail)),
       metering::LocalCalendar::open("Europe/Berlin").value(),

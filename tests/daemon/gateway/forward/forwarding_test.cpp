@@ -31,7 +31,7 @@ class ForwardingTest : public ::testing::Test {
   void SetUp() override {
     if (!Mosquitto::can_run()) GTEST_SKIP() << "mosquitto of Debian is not installed";
     ASSERT_TRUE(store_.keep_outbox_for({"fleet"}).has_value());
-    ASSERT_TRUE(store_.put_cursor(history_cursor("fleet"), record::kHistoryTold).has_value());
+    ASSERT_TRUE(store_.put_cursor(history_cursor("fleet"), record::kHistorySent).has_value());
     ASSERT_TRUE(store_.commit({.intervals = {{{main_, kNoon, 4.0}}}}).has_value());
   }
 
@@ -52,7 +52,7 @@ class ForwardingTest : public ::testing::Test {
                           .store = store_,
                           .rules = {.retry_min = hours{1}, .retry_max = hours{1}}},
         site(fleet()), metering::LocalCalendar::open("Europe/Berlin").value(),
-        [this](const StoreEvent& event) { told_.push_back(event.kind); }, [](const ToldValue&) {});
+        [this](const StoreEvent& event) { told_.push_back(event.kind); }, [](const MqttValue&) {});
     forwarding_->start();
   }
   /// Runs the loop until then.

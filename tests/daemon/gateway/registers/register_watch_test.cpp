@@ -158,7 +158,7 @@ TEST_F(Watched, TheCalibrationInUseAndItsForecasts) {
                              .q95 = 3.0};
   ASSERT_TRUE(disk_.add_forecasts({&march, 1}));
   EXPECT_TRUE(std::isnan(watch_->facts().model_age_days)) << "nobody has said so";
-  watch_->look_again();
+  watch_->refresh();
   loop_.run_for(seconds{3});
   const SiteFacts site = watch_->facts();
   EXPECT_NEAR(site.model_age_days, 1.5, 1e-3);

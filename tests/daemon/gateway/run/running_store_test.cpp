@@ -44,11 +44,11 @@ TEST_F(RunningStoreTest, OnAReadOnlyDiskItIsInMemoryUntilTheDiskIsNot) {
   EXPECT_EQ(opener_.wait(), seconds{10});
   recald::testing::before_file_change = {};
   EXPECT_TRUE(opener_.open(config_, kNow).has_value());
-  EXPECT_FALSE(system::FileLock::take(folder_ / "site.db.lock").has_value());
+  EXPECT_FALSE(system::FileLock::acquire(folder_ / "site.db.lock").has_value());
 }
 
 TEST_F(RunningStoreTest, AnotherRecaldOnItIsNothingToWaitFor) {
-  const auto lock = system::FileLock::take(folder_ / "site.db.lock");
+  const auto lock = system::FileLock::acquire(folder_ / "site.db.lock");
   const auto running = open_to_run();
   ASSERT_FALSE(running.has_value());
   EXPECT_THAT(running.error().message, HasSubstr("is held by another recald"));

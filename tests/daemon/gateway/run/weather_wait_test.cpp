@@ -166,7 +166,7 @@ TEST_F(WeatherWaitTest, AnOldHoleCostsALookADay) {
   looked_.clear();
   loop_.run_for(hours{24 * 10});
   EXPECT_EQ(looked_.size(), 10U);
-  wait_->set_look([this](const metering::MonthRange& months) { return look(months); });
+  wait_->set_check([this](const metering::MonthRange& months) { return look(months); });
   loop_.run_for(hours{1});
   EXPECT_EQ(looked_.size(), 11U);
 }

@@ -208,7 +208,7 @@ TEST_F(Transfer, NothingIsImportedWithoutReasonOrBesideADaemon) {
   write_text(csv(), "timestamp,meter,value,unit\n");
   EXPECT_EQ(run({"import", site(), csv()}).exit_code, 2);
   EXPECT_EQ(run({"import", site(), csv(), "--reason", " "}).exit_code, 2);
-  const auto lock = system::FileLock::take(folder_ / "site.db.lock");
+  const auto lock = system::FileLock::acquire(folder_ / "site.db.lock");
   ASSERT_TRUE(lock.has_value());
   const Outcome beside = run({"import", site(), csv(), "--reason", "r"});
   EXPECT_EQ(beside.exit_code, 1);

@@ -1,8 +1,8 @@
 // A message of a broker gives values that a counter can take, or a reason; nothing else.
 #include <cmath>
 
+#include "daemon/gateway/ingest/meter_message.hpp"
 #include "daemon/gateway/ingest/plausible_time.hpp"
-#include "daemon/gateway/ingest/told_message.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace recald::fuzz {
@@ -34,14 +34,15 @@ const metering::Instant kNow = std::chrono::sys_days{std::chrono::year{2026} / 3
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace recald::fuzz;
   static const auto site = recald::daemon::parse_site(kSite, "/nowhere/site.toml").value();
-  const auto told = recald::daemon::read_told(site, "a", text_of(data, size), false, kNow);
-  for (const auto& value : told.values) {
+  const auto message =
+      recald::daemon::parse_meter_message(site, "a", text_of(data, size), false, kNow);
+  for (const auto& value : message.values) {
     require(std::isfinite(value.value), "a value is finite");
     require(value.measured.has_value() == value.is_counter, "of the one that has a time");
     require(!value.measured || (recald::daemon::is_plausible_time(*value.measured) &&
                                 *value.measured <= kNow + std::chrono::minutes{5}),
             "it has happened");
   }
-  for (const auto& refusal : told.refusals) require_sentence(refusal.why);
+  for (const auto& refusal : message.refusals) require_sentence(refusal.why);
   return 0;
 }

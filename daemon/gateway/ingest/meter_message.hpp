@@ -13,7 +13,7 @@
 namespace recald::daemon {
 
 /// A value of a meter with source = "mqtt".
-struct ToldValue {
+struct MqttValue {
   std::string meter;  ///< Its id.
   bool is_counter;    ///< Its energy in kWh; else its power in kW.
   double value;
@@ -21,25 +21,25 @@ struct ToldValue {
 };
 
 /// What could not be read, for people.
-struct ToldRefusal {
+struct MqttRefusal {
   std::string meter;
   std::string why;  ///< A sentence.
 };
 
-struct ToldMessage {
-  std::vector<ToldValue> values;
-  std::vector<ToldRefusal> refusals;
+struct MeterMessage {
+  std::vector<MqttValue> values;
+  std::vector<MqttRefusal> refusals;
 };
 
 /// Reads the values of all meters that are told by that topic.
 /// @param is_retained  It was kept by the broker: without a time of its own it may be of any age,
 ///                     and is left out.
 /// @param now          Values from more than five minutes later are refused.
-[[nodiscard]] ToldMessage read_told(const SiteConfig& site, std::string_view topic,
-                                    std::string_view payload, bool is_retained,
-                                    metering::Instant now);
+[[nodiscard]] MeterMessage parse_meter_message(const SiteConfig& site, std::string_view topic,
+                                               std::string_view payload, bool is_retained,
+                                               metering::Instant now);
 
 /// The topics that the site's meters need, each once.
-[[nodiscard]] std::vector<std::string> told_topics(const SiteConfig& site);
+[[nodiscard]] std::vector<std::string> meter_topics(const SiteConfig& site);
 
 }  // namespace recald::daemon

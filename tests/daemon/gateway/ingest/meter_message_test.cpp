@@ -1,11 +1,11 @@
 /// Messages of a broker as values of meters.
-#include "daemon/gateway/ingest/told_message.hpp"
+#include "daemon/gateway/ingest/meter_message.hpp"
 
 #include <gmock/gmock.h>
 
 #include <stdexcept>
 
-namespace recald::daemon::told_message_test {
+namespace recald::daemon::meter_message_test {
 namespace {
 
 using metering::Instant;
@@ -52,21 +52,21 @@ power_from = { topic = "plant/fan", pointer = "/watts/0", unit = "W" }
   return kSite;
 }
 
-ToldMessage read(std::string_view topic, std::string_view payload, bool is_retained = false) {
-  return read_told(site(), topic, payload, is_retained, kNoon);
+MeterMessage read(std::string_view topic, std::string_view payload, bool is_retained = false) {
+  return parse_meter_message(site(), topic, payload, is_retained, kNoon);
 }
 
-std::vector<double> values(const ToldMessage& told) {
+std::vector<double> values(const MeterMessage& told) {
   std::vector<double> all;
-  for (const ToldValue& value : told.values) all.push_back(value.value);
+  for (const MqttValue& value : told.values) all.push_back(value.value);
   return all;
 }
 
-TEST(ToldMessage, NamesItsTopicsOnce) {
-  EXPECT_THAT(told_topics(site()), ElementsAre("plant/fan", "plant/main", "plant/pump"));
+TEST(MeterMessage, NamesItsTopicsOnce) {
+  EXPECT_THAT(meter_topics(site()), ElementsAre("plant/fan", "plant/main", "plant/pump"));
 }
 
-TEST(ToldMessage, AMessageMayHaveSeveralValuesAndATime) {
+TEST(MeterMessage, AMessageMayHaveSeveralValuesAndATime) {
   const auto told = read(
       "plant/main", R"({"time":"2026-02-03T12:59:00+01:00","energy":{"total":12.5},"power":850})");
   ASSERT_THAT(values(told), ElementsAre(DoubleEq(12'500.0), DoubleEq(0.85)));
@@ -77,14 +77,14 @@ TEST(ToldMessage, AMessageMayHaveSeveralValuesAndATime) {
   EXPECT_EQ(told.values[0].measured, kNoon - seconds{60});
 }
 
-TEST(ToldMessage, ThePayloadMayBeTheNumber) {
+TEST(MeterMessage, ThePayloadMayBeTheNumber) {
   EXPECT_THAT(values(read("plant/pump", "4.25")), ElementsAre(4.25));
   EXPECT_THAT(values(read("plant/pump", " -4e0\r\n")), ElementsAre(-4.0));
   EXPECT_EQ(read("plant/pump", "4.25").values.at(0).measured, std::nullopt);
   EXPECT_THAT(values(read("plant/fan", R"({"watts":["1500"]})")), ElementsAre(1.5));
 }
 
-TEST(ToldMessage, TimesAreSecondsOrMillisecondsToo) {
+TEST(MeterMessage, TimesAreSecondsOrMillisecondsToo) {
   const auto at = kNoon.time_since_epoch().count();
   for (const std::string& time : {std::to_string(at), std::to_string(at) + "000"}) {
     const auto told = read("plant/main", R"({"power":1,"time":)" + time + "}");
@@ -94,14 +94,14 @@ TEST(ToldMessage, TimesAreSecondsOrMillisecondsToo) {
 }
 
 // It may be of any age: whoever subscribes gets it at once.
-TEST(ToldMessage, ARetainedMessageCountsOnlyWithATime) {
+TEST(MeterMessage, ARetainedMessageCountsOnlyWithATime) {
   EXPECT_THAT(read("plant/pump", "4.25", true).values, IsEmpty());
   EXPECT_THAT(read("plant/pump", "4.25", true).refusals, IsEmpty());
   EXPECT_THAT(read("plant/main", R"({"power":1,"time":"2026-02-03T11:59:00Z"})", true).values,
               SizeIs(1));
 }
 
-TEST(ToldMessage, WhatIsNotThereIsNoFault) {
+TEST(MeterMessage, WhatIsNotThereIsNoFault) {
   for (const char* payload : {"{}", R"({"watts":[]})", R"({"watts":[null]})", R"({"watts":3})"}) {
     EXPECT_THAT(read("plant/fan", payload).values, IsEmpty()) << payload;
     EXPECT_THAT(read("plant/fan", payload).refusals, IsEmpty()) << payload;
@@ -109,7 +109,7 @@ TEST(ToldMessage, WhatIsNotThereIsNoFault) {
   EXPECT_THAT(read("plant/other", "4.25").values, IsEmpty());
 }
 
-TEST(ToldMessage, WhatCannotBeReadIsSaid) {
+TEST(MeterMessage, WhatCannotBeReadIsSaid) {
   const auto why = [](std::string_view topic, std::string_view payload) {
     const auto told = read(topic, payload);
     EXPECT_THAT(told.values, IsEmpty()) << payload;
@@ -130,4 +130,4 @@ TEST(ToldMessage, WhatCannotBeReadIsSaid) {
 }
 
 }  // namespace
-}  // namespace recald::daemon::told_message_test
+}  // namespace recald::daemon::meter_message_test

@@ -1,4 +1,4 @@
-#include "daemon/gateway/ingest/told_message.hpp"
+#include "daemon/gateway/ingest/meter_message.hpp"
 
 #include <fmt/format.h>
 
@@ -62,7 +62,7 @@ class Message {
       : payload_(payload), is_retained_(is_retained), now_(now) {}
 
   /// @return nothing where the message does not have the value; or why it cannot be taken.
-  [[nodiscard]] Result<std::optional<ToldValue>> read(const MqttValue& wanted) {
+  [[nodiscard]] Result<std::optional<MqttValue>> read(const MqttValue& wanted) {
     std::optional<double> number;
     if (wanted.pointer.empty() && wanted.time_pointer.empty()) {
       number = number_in(payload_);
@@ -71,7 +71,7 @@ class Message {
     if (!number && !parse()) return refused(wanted, "is no JSON");
     if (!number) {
       const json* const part = part_at(document_, wanted.pointer);
-      if (part == nullptr || part->is_null()) return std::optional<ToldValue>{};
+      if (part == nullptr || part->is_null()) return std::optional<MqttValue>{};
       number = number_of(*part);
       if (!number) return refused(wanted, "is no number");
     }
@@ -87,9 +87,9 @@ class Message {
                                    ", but the clock says " + metering::to_string(now_));
       }
     } else if (is_retained_) {
-      return std::optional<ToldValue>{};
+      return std::optional<MqttValue>{};
     }
-    return std::optional{ToldValue{
+    return std::optional{MqttValue{
         .meter = {}, .is_counter = false, .value = *number * wanted.factor, .measured = measured}};
   }
 
@@ -121,9 +121,9 @@ class Message {
 
 }  // namespace
 
-ToldMessage read_told(const SiteConfig& site, std::string_view topic, std::string_view payload,
-                      bool is_retained, Instant now) {
-  ToldMessage told;
+MeterMessage parse_meter_message(const SiteConfig& site, std::string_view topic,
+                                 std::string_view payload, bool is_retained, Instant now) {
+  MeterMessage message;
   Message message{payload, is_retained, now};
   for (const MeterConfig& meter : site.meters) {
     if (!meter.mqtt) continue;
@@ -132,18 +132,18 @@ ToldMessage read_told(const SiteConfig& site, std::string_view topic, std::strin
       if (!wanted || wanted->topic != topic) continue;
       auto value = message.read(*wanted);
       if (!value) {
-        told.refusals.push_back({meter.meter.id, std::move(value.error().message)});
+        message.refusals.push_back({meter.meter.id, std::move(value.error().message)});
       } else if (*value) {
         (*value)->meter = meter.meter.id;
         (*value)->is_counter = is_counter;
-        told.values.push_back(std::move(**value));
+        message.values.push_back(std::move(**value));
       }
     }
   }
-  return told;
+  return message;
 }
 
-std::vector<std::string> told_topics(const SiteConfig& site) {
+std::vector<std::string> meter_topics(const SiteConfig& site) {
   std::set<std::string> topics;
   for (const MeterConfig& meter : site.meters) {
     if (!meter.mqtt) continue;
