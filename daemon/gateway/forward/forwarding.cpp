@@ -169,7 +169,7 @@ void Forwarding::connect_to_fleet() {
 void Forwarding::on_message(const mqtt::Message& message) {
   const MeterMessage parsed = parse_meter_message(*site_, message.topic, message.payload,
                                                   message.is_retained, ports_.loop.now().instant());
-  for (const MqttValue& value : parsed.values) on_value_(value);
+  for (const MeterValue& value : parsed.values) on_value_(value);
   const auto now = ports_.loop.now().monotonic;
   for (const MqttRefusal& refusal : parsed.refusals) {
     // Whoever sends nonsense ten times a second does not have it stored as often.

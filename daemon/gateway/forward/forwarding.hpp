@@ -33,7 +33,7 @@ class Forwarding {
     ForwardRules rules = {};  ///< Of every destination.
   };
   using Notify = std::function<void(StoreEvent)>;
-  using OnValue = std::function<void(const MqttValue&)>;
+  using OnValue = std::function<void(const MeterValue&)>;
 
   /// @param tell      Adds an event.
   /// @param on_value  Called on the loop's thread for each value of a meter.

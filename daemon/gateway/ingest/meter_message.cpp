@@ -62,7 +62,7 @@ class Message {
       : payload_(payload), is_retained_(is_retained), now_(now) {}
 
   /// @return nothing where the message does not have the value; or why it cannot be taken.
-  [[nodiscard]] Result<std::optional<MqttValue>> read(const MqttValue& wanted) {
+  [[nodiscard]] Result<std::optional<MeterValue>> read(const MqttValue& wanted) {
     std::optional<double> number;
     if (wanted.pointer.empty() && wanted.time_pointer.empty()) {
       number = number_in(payload_);
@@ -71,7 +71,7 @@ class Message {
     if (!number && !parse()) return refused(wanted, "is no JSON");
     if (!number) {
       const json* const part = part_at(document_, wanted.pointer);
-      if (part == nullptr || part->is_null()) return std::optional<MqttValue>{};
+      if (part == nullptr || part->is_null()) return std::optional<MeterValue>{};
       number = number_of(*part);
       if (!number) return refused(wanted, "is no number");
     }
@@ -87,9 +87,9 @@ class Message {
                                    ", but the clock says " + metering::to_string(now_));
       }
     } else if (is_retained_) {
-      return std::optional<MqttValue>{};
+      return std::optional<MeterValue>{};
     }
-    return std::optional{MqttValue{
+    return std::optional{MeterValue{
         .meter = {}, .is_counter = false, .value = *number * wanted.factor, .measured = measured}};
   }
 
@@ -123,7 +123,7 @@ class Message {
 
 MeterMessage parse_meter_message(const SiteConfig& site, std::string_view topic,
                                  std::string_view payload, bool is_retained, Instant now) {
-  MeterMessage message;
+  MeterMessage parsed;
   Message message{payload, is_retained, now};
   for (const MeterConfig& meter : site.meters) {
     if (!meter.mqtt) continue;
@@ -132,15 +132,15 @@ MeterMessage parse_meter_message(const SiteConfig& site, std::string_view topic,
       if (!wanted || wanted->topic != topic) continue;
       auto value = message.read(*wanted);
       if (!value) {
-        message.refusals.push_back({meter.meter.id, std::move(value.error().message)});
+        parsed.refusals.push_back({meter.meter.id, std::move(value.error().message)});
       } else if (*value) {
         (*value)->meter = meter.meter.id;
         (*value)->is_counter = is_counter;
-        message.values.push_back(std::move(**value));
+        parsed.values.push_back(std::move(**value));
       }
     }
   }
-  return message;
+  return parsed;
 }
 
 std::vector<std::string> meter_topics(const SiteConfig& site) {

@@ -13,7 +13,7 @@
 namespace recald::daemon {
 
 /// A value of a meter with source = "mqtt".
-struct MqttValue {
+struct MeterValue {
   std::string meter;  ///< Its id.
   bool is_counter;    ///< Its energy in kWh; else its power in kW.
   double value;
@@ -27,7 +27,7 @@ struct MqttRefusal {
 };
 
 struct MeterMessage {
-  std::vector<MqttValue> values;
+  std::vector<MeterValue> values;
   std::vector<MqttRefusal> refusals;
 };
 

@@ -386,7 +386,7 @@ void Gateway::take_at(LiveMeter& meter, const PolledRead& read, Instant at) {
   submit(std::move(batch));
 }
 
-Result<bool> Gateway::accept_mqtt(const MqttValue& value) {
+Result<bool> Gateway::accept_mqtt(const MeterValue& value) {
   const auto mqtt_meter = std::ranges::find(mqtt_meters_, value.meter, &LiveMeter::id);
   const auto is_it = [&](const modbus::PlannedRead& read) {
     const modbus::RegisterMap& map = mqtt_meter->config.map;
@@ -597,7 +597,7 @@ void Gateway::evaluate_meters() {
   watch_clock(ports_.loop.now());
   if (!clock_ok_) return;
   const Instant now = ports_.loop.now().instant();
-  const auto judge = [&](const std::string& meter, std::optional<Instant> heard_at) {
+  const auto evaluate = [&](const std::string& meter, std::optional<Instant> heard_at) {
     const auto watch = meter_watches_.find(meter);
     if (watch == meter_watches_.end()) return;
     if (auto event = watch->second.evaluate(heard_at, now)) note(std::move(*event));

@@ -94,7 +94,7 @@ class Gateway {
   /// Takes a value of a meter with source = "mqtt". One that is not later than the last is left
   /// out: a broker may deliver twice, and out of order.
   /// @return whether it was taken; not_found for a meter that lacks such a value.
-  [[nodiscard]] Result<bool> accept_mqtt(const MqttValue& value);
+  [[nodiscard]] Result<bool> accept_mqtt(const MeterValue& value);
 
   /// Adds an event for people to find.
   void note(StoreEvent event) { submit({.events = {std::move(event)}}); }

@@ -136,7 +136,7 @@ class Service {
         forwarding_(
             {loop_, *store_, running_.missing.empty()}, shared_config(), site_.calendar,
             [this](StoreEvent event) { gateway_->note(std::move(event)); },
-            [this](const MqttValue& value) { (void)gateway_->take_notified(value); }) {}
+            [this](const MeterValue& value) { (void)gateway_->accept_mqtt(value); }) {}
 
   /// @param memory  What an earlier service kept in memory; may be null.
   Result<void> open(Store* memory) {

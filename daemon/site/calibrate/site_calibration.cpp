@@ -18,6 +18,7 @@
 #include "core/model/epc/prepare.hpp"
 #include "core/model/hourly/prepare.hpp"
 #include "core/model/model_adaptors.hpp"
+#include "core/text/number_text.hpp"
 #include "core/weather/assumed_sky.hpp"
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/calibrate/effects_calibration.hpp"

@@ -52,7 +52,7 @@ class ForwardingTest : public ::testing::Test {
                           .store = store_,
                           .rules = {.retry_min = hours{1}, .retry_max = hours{1}}},
         site(fleet()), metering::LocalCalendar::open("Europe/Berlin").value(),
-        [this](const StoreEvent& event) { told_.push_back(event.kind); }, [](const MqttValue&) {});
+        [this](const StoreEvent& event) { told_.push_back(event.kind); }, [](const MeterValue&) {});
     forwarding_->start();
   }
   /// Runs the loop until then.

@@ -58,7 +58,7 @@ MeterMessage read(std::string_view topic, std::string_view payload, bool is_reta
 
 std::vector<double> values(const MeterMessage& told) {
   std::vector<double> all;
-  for (const MqttValue& value : told.values) all.push_back(value.value);
+  for (const MeterValue& value : told.values) all.push_back(value.value);
   return all;
 }
 
