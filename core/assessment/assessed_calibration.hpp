@@ -61,8 +61,6 @@ struct AssessedCalibration {
   std::vector<MonthRole> roles;          ///< (months) calibration months come first.
   std::vector<Parameter> parameters;
   std::vector<Parameter> fixed_parameters;  ///< In the model at their prior means, not calibrated.
-  /// (parameters) Where a prior that the site gives comes from, as it says; empty: nothing is said.
-  std::vector<std::string> prior_sources;
   /// (parameters) sd of what each means in the model, in prior sds (model_errors.hpp); empty: none.
   std::vector<double> parameter_errors;
   std::optional<MetamodelFacts> metamodel;

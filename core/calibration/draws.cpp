@@ -19,8 +19,9 @@ struct Quantity {
 std::vector<Quantity> parameter_quantities(const std::vector<Parameter>& parameters) {
   std::vector<Quantity> quantities;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
-    const auto& [name, unit, prior] = parameters[j];
-    quantities.push_back({name, unit, prior.mean(), std::sqrt(prior.variance()),
+    const Parameter& parameter = parameters[j];
+    const Prior& prior = parameter.prior;
+    quantities.push_back({parameter.name, parameter.unit, prior.mean(), std::sqrt(prior.variance()),
                           [column = static_cast<Eigen::Index>(j)](const ChainDraws& chain) {
                             return chain.theta.col(column);
                           }});

@@ -253,7 +253,7 @@ const Eigen::ArrayXXd& Predictor::parts_kW(std::span<const double> theta,
   if (is_stopped_) return parts_kW_;
   building_ = site_->nominal;  // same sizes, nothing is allocated
   for (std::size_t j = 0; j < theta.size(); ++j) {
-    site_->definitions[j]->set(building_, theta[j]);
+    site_->parameters[j].definition->set(building_, theta[j]);
   }
   model::settle(building_);
   active_.clear();

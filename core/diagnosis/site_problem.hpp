@@ -30,9 +30,8 @@ struct MeterData {
 
 struct SiteProblem {
   model::Building nominal;
-  std::vector<const model::ParameterDefinition*> definitions;  ///< (q)
-  std::vector<Parameter> parameters;                           ///< (q) with their original priors.
-  model::ElectricLoads loads;                                  ///< Lights and plugs of the drivers.
+  std::vector<Parameter> parameters;  ///< (q) with their original priors.
+  model::ElectricLoads loads;         ///< Lights and plugs of the drivers.
   std::shared_ptr<const model::Drivers> drivers;
   bool has_sun = true;            ///< False: it was assumed, and nothing may be concluded from it.
   std::vector<MeterData> meters;  ///< (m)

@@ -19,6 +19,13 @@ std::string describe(std::span<const Parameter> parameters, std::span<const doub
   return text.str();
 }
 
+std::vector<const model::ParameterDefinition*> definitions_of(
+    std::span<const Parameter> parameters) {
+  std::vector<const model::ParameterDefinition*> definitions;
+  for (const Parameter& parameter : parameters) definitions.push_back(parameter.definition);
+  return definitions;
+}
+
 std::vector<double> prior_modes(std::span<const Parameter> parameters) {
   std::vector<double> theta;
   for (const Parameter& parameter : parameters) theta.push_back(parameter.prior.mode());

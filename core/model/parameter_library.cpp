@@ -262,9 +262,16 @@ Result<Parameter> make_parameter(const ParameterDefinition& definition, double d
                                  const std::optional<Prior>& prior) {
   const std::string name{definition.name};
   const std::string unit{definition.unit};
+  const auto with = [&](Prior of) {
+    return Parameter{.name = name,
+                     .unit = unit,
+                     .prior = std::move(of),
+                     .label = std::string{definition.label},
+                     .definition = &definition};
+  };
   if (prior) {
     auto physical = TRY(physical_prior(definition, *prior));
-    return Parameter{name, unit, physical};
+    return with(physical);
   }
   if (definition.range == RangeKind::relative) {
     if (!(design > 0.0)) {
@@ -272,7 +279,7 @@ Result<Parameter> make_parameter(const ParameterDefinition& definition, double d
                      name + ": its range is relative to the design value, which is " +
                          number(design) + "; give min, mode and max");
     }
-    return Parameter{name, unit, {definition.low * design, design, definition.high * design}};
+    return with({definition.low * design, design, definition.high * design});
   }
   if (!(definition.least <= design && design <= definition.most)) {
     return failure(ErrorCode::invalid_value,
@@ -283,7 +290,7 @@ Result<Parameter> make_parameter(const ParameterDefinition& definition, double d
       design < definition.low ? std::max(design - beyond, definition.least) : definition.low;
   const double high =
       design > definition.high ? std::min(design + beyond, definition.most) : definition.high;
-  return Parameter{name, unit, {low, design, high}};
+  return with({low, design, high});
 }
 
 void settle(Building& building) {

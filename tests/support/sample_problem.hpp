@@ -18,8 +18,7 @@ inline diagnosis::SiteProblem sample_problem(std::span<const char* const> parame
   diagnosis::SiteProblem site;
   site.nominal = sample_building();
   for (const char* name : parameters) {
-    site.definitions.push_back(*model::find_parameter(name));
-    site.parameters.push_back(*model::make_parameter(*site.definitions.back(), site.nominal));
+    site.parameters.push_back(*model::make_parameter(**model::find_parameter(name), site.nominal));
   }
   site.drivers = std::make_shared<const model::Drivers>(sample_drivers(site.nominal, months));
   for (const auto& [id, utility] :

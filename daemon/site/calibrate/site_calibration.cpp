@@ -96,16 +96,16 @@ void warn_about_level_changes(const Recording& recording, SiteCalibration& resul
 /// A wide prior lets a parameter go where no building lies, and it goes there when something else
 /// is missing.
 void warn_about_unusual_parameters(const SiteConfig& site, SiteCalibration& result) {
-  if (result.definitions.empty()) return;  // a client's model has values of its own
+  if (!facts_of(result.model).is_of_building) return;  // a client's model has values of its own
   for (std::size_t j = 0; j < site.model->parameters.size(); ++j) {
-    const auto usual = model::make_parameter(*result.definitions[j], *site.building);
+    const auto usual = model::make_parameter(*result.parameters[j].definition, *site.building);
     if (!usual) continue;
     const calibration::Summary& found = result.calibration.parameters[j];
     if (usual->prior.min() <= found.mean && found.mean <= usual->prior.max()) continue;
     const display::Unit unit = display::unit_of(site.units, found.unit);
     result.alarms.push_back(
         {fmt::format("{} came out at {:.3g}{}{}; in buildings like this it is {:.3g} to {:.3g}.",
-                     result.definitions[j]->label, unit.shown(found.mean),
+                     result.parameters[j].label, unit.shown(found.mean),
                      unit.name.empty() ? "" : " ", unit.name, unit.shown(usual->prior.min()),
                      unit.shown(usual->prior.max())),
          "The drawings may be wrong, or something that the model lacks is read as this."});
@@ -130,9 +130,9 @@ Result<void> take_effects(const SiteConfig& site, const metering::LocalCalendar&
   auto effects = TRY(make_model_effects(
       std::move(added), std::make_shared<const diagnosis::SiteProblem>(std::move(problem))));
   for (std::size_t j = 0; j < effects.parameters.size(); ++j) {
-    result.definitions.push_back(&effects.labels[j]->definition);
-    result.labels.emplace_back(effects.labels[j]->definition.label);
-    result.parameters.push_back(effects.parameters[j]);
+    Parameter& taken = result.parameters.emplace_back(effects.parameters[j]);
+    taken.definition = &effects.labels[j]->definition;
+    taken.label = taken.definition->label;
   }
   result.effects = std::make_shared<const ModelEffects>(std::move(effects));
   // Factors of calendar months hold what an effect changes from month to month: it would count
@@ -292,18 +292,12 @@ Result<PreparedSite> prepare_site(const SiteConfig& site, const metering::LocalC
   PreparedSite prepared{.so_far = std::move(begun.so_far)};
   const SiteMonths& months = begun.months;
   SiteCalibration& result = prepared.so_far;
-  auto chosen = TRY(site_parameters(site));
-  result.definitions = std::move(chosen.definitions);
-  result.parameters = std::move(chosen.parameters);
-  for (const auto* definition : result.definitions) result.labels.emplace_back(definition->label);
-  for (const ParameterConfig& config : site.model->parameters) {
-    result.prior_sources.push_back(config.source);
-  }
+  result.parameters = TRY(site_parameters(site));
   auto maps = TRY(meter_maps(site));
 
   const model::epc::Place place{calendar, site.holidays, *site.location, weather.filled.series};
   result.profile = TRY(fit_site_profile(site, recording, place, months.calibration));
-  SiteModelParts parts{result.definitions, std::move(maps), {}, {}, {}};
+  SiteModelParts parts{definitions_of(result.parameters), std::move(maps), {}, {}, {}};
   TRY(take_effects(site, calendar, recording, weather, std::move(added), result));
   parts.loads = result.profile.loads;
   parts.effects = result.effects;
@@ -409,14 +403,14 @@ void take_evidence(const SiteConfig& site, const assessment::ModelErrorSizes& si
 std::vector<double> parameter_spreads(const SiteConfig& site,
                                       const assessment::ModelErrorSizes& sizes,
                                       SiteCalibration& result) {
-  if (result.definitions.empty()) {
+  if (!facts_of(result.model).is_of_building) {
     result.parameter_errors.assign(result.parameters.size(), sizes.parameter_share);
     return assessment::spreads_of(result.parameters, sizes);
   }
   std::vector<double> spreads(result.parameters.size(), 0.0);
   result.parameter_errors.assign(result.parameters.size(), 0.0);
   for (std::size_t j = 0; j < site.model->parameters.size(); ++j) {
-    const model::ParameterDefinition& definition = *result.definitions[j];
+    const model::ParameterDefinition& definition = *result.parameters[j].definition;
     if (definition.group == "geometry") continue;
     const double own = std::sqrt(result.parameters[j].prior.variance());
     const auto usual = model::make_parameter(definition, *site.building);

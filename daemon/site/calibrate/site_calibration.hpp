@@ -40,11 +40,7 @@ struct CalibratedWith {
 
 struct SiteCalibration : assessment::AssessedCalibration {
   std::vector<metering::Month> months;  ///< Those of `month_names`.
-  /// Of a model of the site's [building]: its parameters'; else empty.
-  std::vector<const model::ParameterDefinition*> definitions;
-  std::vector<std::string> labels;  ///< (parameters) For people.
-  /// Likewise of a [building].
-  profile::ElectricityProfile profile;
+  profile::ElectricityProfile profile;  ///< Of a model of the site's [building].
   /// Of a model that a design of experiments stands for: the design, and what was made of it.
   std::shared_ptr<const SiteDesign> design;
   /// Of the version in force; null: the model is that of the drawings. Their parameters stand

@@ -209,9 +209,9 @@ void take_parameters(const SiteConfig& site, const doe::DesignFolder& design,
       result.fixed_parameters.push_back(parameter);
       continue;
     }
-    result.parameters.push_back(parameter);
-    result.labels.push_back(label_of(parameter.name));
-    result.prior_sources.push_back(site.model->parameters[j].source);
+    Parameter& taken = result.parameters.emplace_back(parameter);
+    taken.label = label_of(parameter.name);
+    taken.source = site.model->parameters[j].source;
   }
 }
 

@@ -57,8 +57,8 @@ Result<diagnosis::MonthlyVote> epc_gap(const SiteConfig& as_configured,
   SiteConfig site = as_configured;
   site.model->kind = ModelKind::epc;
   const MonthlyFigures measured = held_figures(site, recording, problem);
-  auto chosen = TRY(site_parameters(site));
-  TRY(diagnosis::require_enough(measured, chosen.parameters.size()));
+  const auto parameters = TRY(site_parameters(site));
+  TRY(diagnosis::require_enough(measured, parameters.size()));
   const auto maps = TRY(meter_maps(site));
   const std::vector<Month>& months = problem.drivers->months;
   std::vector<Month> fitted;
@@ -68,12 +68,11 @@ Result<diagnosis::MonthlyVote> epc_gap(const SiteConfig& as_configured,
   auto profile = TRY(fit_site_profile(site, recording, place, fitted));
   profile.loads.month_factor.fill(1.0);
   const auto make =
-      TRY(model_of(site, {chosen.definitions, maps, profile.loads, {}, {}}, months, place));
+      TRY(model_of(site, {definitions_of(parameters), maps, profile.loads, {}, {}}, months, place));
 
   const auto plain = make(*site.building);
-  auto altered =
-      with_effects(make(*site.building), at_modes(problem, added, chosen.parameters), added);
-  auto vote = diagnosis::monthly_vote(*plain, altered, chosen.parameters, measured, seed);
+  auto altered = with_effects(make(*site.building), at_modes(problem, added, parameters), added);
+  auto vote = diagnosis::monthly_vote(*plain, altered, parameters, measured, seed);
   vote.gap.model = ModelKind::epc;
   return vote;
 }

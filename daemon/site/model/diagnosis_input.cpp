@@ -88,19 +88,20 @@ diagnosis::MeterData priced(const SiteConfig& site, std::size_t meter, const Met
 
 /// The parameters of the site file, plus others that day parts can inform. Priors from
 /// the file are kept.
-Result<ChosenParameters> choose_parameters(const SiteConfig& site) {
-  ChosenParameters chosen;
-  const auto add = [&](std::string_view name, const std::optional<Prior>& prior) {
-    return chosen.add(name, *site.building,
-                      prior ? prior : diagnosis::wide_prior(name, *site.building));
+Result<std::vector<Parameter>> choose_parameters(const SiteConfig& site) {
+  std::vector<Parameter> chosen;
+  const auto add = [&](std::string_view name, const std::optional<Prior>& prior) -> Result<void> {
+    const auto definition = TRY(model::find_parameter(name));
+    auto parameter = TRY(model::make_parameter(
+        *definition, *site.building, prior ? prior : diagnosis::wide_prior(name, *site.building)));
+    chosen.push_back(std::move(parameter));
+    return {};
   };
   for (const ParameterConfig& config : site.model->parameters) {
     TRY(add(config.name, config.prior));
   }
   for (const std::string_view name : diagnosis::day_part_parameters(*site.building)) {
-    if (std::ranges::find(chosen.parameters, name, &Parameter::name) != chosen.parameters.end()) {
-      continue;
-    }
+    if (std::ranges::find(chosen, name, &Parameter::name) != chosen.end()) continue;
     // If the design value is 0 or outside the library's range, the drawings are trusted.
     (void)add(name, {});
   }
@@ -226,9 +227,7 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   }
   problem.currency = site.tariff.currency;
   problem.units = site.units;
-  auto chosen = TRY(choose_parameters(site));
-  problem.definitions = std::move(chosen.definitions);
-  problem.parameters = std::move(chosen.parameters);
+  problem.parameters = TRY(choose_parameters(site));
   problem.day_parts = diagnosis::make_day_parts(*problem.drivers);
   problem.measured_parts_kW = diagnosis::measured_parts(problem.day_parts, problem.measured_kW);
   problem.roles = diagnosis::part_roles(problem.day_parts, problem.month_roles, split.buffer_days);

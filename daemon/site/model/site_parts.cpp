@@ -128,19 +128,13 @@ std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
   return loads;
 }
 
-Result<void> ChosenParameters::add(std::string_view name, const model::Building& nominal,
-                                   const std::optional<Prior>& prior) {
-  const auto definition = TRY(model::find_parameter(name));
-  auto parameter = TRY(model::make_parameter(*definition, nominal, prior));
-  definitions.push_back(definition);
-  parameters.push_back(std::move(parameter));
-  return {};
-}
-
-Result<ChosenParameters> site_parameters(const SiteConfig& site) {
-  ChosenParameters chosen;
+Result<std::vector<Parameter>> site_parameters(const SiteConfig& site) {
+  std::vector<Parameter> chosen;
   for (const ParameterConfig& config : site.model->parameters) {
-    TRY(chosen.add(config.name, *site.building, config.prior));
+    const auto definition = TRY(model::find_parameter(config.name));
+    auto parameter = TRY(model::make_parameter(*definition, *site.building, config.prior));
+    parameter.source = config.source;
+    chosen.push_back(std::move(parameter));
   }
   return chosen;
 }

@@ -45,18 +45,9 @@ struct SiteMonths {
 [[nodiscard]] std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
                                                         const std::vector<metering::Month>& months);
 
-/// Calibration parameters and their definitions in a building, in the same order.
-struct ChosenParameters {
-  std::vector<const model::ParameterDefinition*> definitions;
-  std::vector<Parameter> parameters;
-
-  /// @return the error of `find_parameter` or `make_parameter`; then nothing was added.
-  [[nodiscard]] Result<void> add(std::string_view name, const model::Building& nominal,
-                                 const std::optional<Prior>& prior);
-};
-
-/// The parameters that the site file names. @pre the site has a model
-[[nodiscard]] Result<ChosenParameters> site_parameters(const SiteConfig& site);
+/// The parameters that the site file names. @pre the site has a model of a [building]
+/// @return or the error of `find_parameter` or `make_parameter`
+[[nodiscard]] Result<std::vector<Parameter>> site_parameters(const SiteConfig& site);
 
 /// What each modelled meter measures, in the order of the model's outputs. @pre the
 /// site has a model

@@ -49,9 +49,8 @@ Json parameters_json(const assessment::AssessedCalibration& result) {
     entry["contraction_max"] = results::number(assessment::contraction_max(result, j));
     entry["identified"] = assessment::is_identified(result, j);
     entry["prior"] = prior_json(result.parameters[j].prior);
-    if (j < result.prior_sources.size() && !result.prior_sources[j].empty()) {
-      entry["prior"]["source"] = result.prior_sources[j];
-    }
+    const std::string& source = result.parameters[j].source;
+    if (!source.empty()) entry["prior"]["source"] = source;
     list.push_back(std::move(entry));
   }
   return list;

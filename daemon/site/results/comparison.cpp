@@ -74,7 +74,7 @@ std::vector<report::ComparedModel> compared_models(const std::vector<SiteModelRe
       const calibration::Summary& found = result.calibration.parameters[j];
       const display::Unit unit = display::unit_of(result.units, found.unit);
       shown.parameters.emplace_back(
-          result.labels[j],
+          result.parameters[j].label,
           fmt::format("{:.3g} ({:.3g} to {:.3g}){}{}", unit.shown(found.q50), unit.shown(found.q05),
                       unit.shown(found.q95), unit.name.empty() ? "" : " ", unit.name));
     }

@@ -126,7 +126,7 @@ Json base_parameters_json(const SiteProblem& site,
   Json list = Json::array();
   for (std::size_t j = 0; j < beliefs.size(); ++j) {
     list.push_back({{"name", site.parameters[j].name},
-                    {"unit", site.definitions[j]->unit},
+                    {"unit", site.parameters[j].unit},
                     {"mode", results::number(beliefs[j].mode)},
                     {"q05", results::number(beliefs[j].q05)},
                     {"q95", results::number(beliefs[j].q95)}});

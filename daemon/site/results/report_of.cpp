@@ -295,7 +295,7 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
                           .units = site.units,
                           .currency = site.tariff.currency};
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
-    data.parameters.push_back(parameter_of(result, j, result.labels[j]));
+    data.parameters.push_back(parameter_of(result, j, result.parameters[j].label));
   }
   std::vector<ShownOutput> shown;
   for (std::size_t k = 0; k < result.outputs.size(); ++k) {

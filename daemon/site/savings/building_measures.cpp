@@ -176,8 +176,8 @@ std::vector<savings::Limits> limits_of(const SiteCalibration& result, Index cali
       limit = {prior.min(), prior.max()};  // of an effect, which is no error of the model
       continue;
     }
-    limit.least = std::max(limit.least, result.definitions[j]->least);
-    limit.most = std::min(limit.most, result.definitions[j]->most);
+    limit.least = std::max(limit.least, result.parameters[j].definition->least);
+    limit.most = std::min(limit.most, result.parameters[j].definition->most);
   }
   return limits;
 }

@@ -215,8 +215,7 @@ SiteProblem own_meters() {
   SiteProblem site;
   site.nominal = testing::sample_building();
   for (const char* name : {"outdoor_airflow", "cooling_setpoint"}) {
-    site.definitions.push_back(*model::find_parameter(name));
-    site.parameters.push_back(*model::make_parameter(*site.definitions.back(), site.nominal));
+    site.parameters.push_back(*model::make_parameter(**model::find_parameter(name), site.nominal));
   }
   site.drivers = std::make_shared<const model::Drivers>(testing::sample_drivers(site.nominal, 12));
   for (const auto& [id, utility] : {std::pair{"electricity", Utility::electricity},

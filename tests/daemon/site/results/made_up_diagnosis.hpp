@@ -14,8 +14,8 @@ inline diagnosis::SiteProblem made_up_site() {
   using diagnosis::Role;
   diagnosis::SiteProblem site;
   site.nominal = sample_building();
-  site.definitions.push_back(*model::find_parameter("cooling_setpoint"));
-  site.parameters.push_back(*model::make_parameter(*site.definitions.back(), site.nominal));
+  site.parameters.push_back(
+      *model::make_parameter(**model::find_parameter("cooling_setpoint"), site.nominal));
   site.drivers = std::make_shared<const model::Drivers>(sample_drivers(site.nominal, 8));
   for (const auto& [id, utility] : {std::pair{"chilled_water", metering::Utility::chilled_water},
                                     std::pair{"steam", metering::Utility::steam}}) {
