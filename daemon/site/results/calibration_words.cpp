@@ -10,6 +10,7 @@
 #include "core/absent.hpp"
 #include "core/assessment/fit_metrics.hpp"
 #include "core/display/id_words.hpp"
+#include "core/text/number_text.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "adapters/report/format.hpp"
+#include "core/text/number_text.hpp"
 
 namespace recald::daemon {
 namespace {
