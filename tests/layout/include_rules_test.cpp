@@ -119,7 +119,8 @@ std::string without_words(const std::string& source) {
 struct Source {
   std::set<std::string> included;
   std::set<std::string> words;
-  std::set<std::string> of;  ///< Namespaces, without those around them: "metering".
+  std::set<std::string> of;      ///< Our namespaces, without those around them: "metering".
+  std::set<std::string> opened;  ///< Those and others, such as for a class before its header.
   /// What it calls by a namespace: {"metering", "month_of"}.
   std::set<std::pair<std::string, std::string>> names;
 };
@@ -130,8 +131,9 @@ Source parse_source(const std::string& text, std::set<std::string> included) {
   const auto is_of_word = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
   };
-  Source source{std::move(included), {}, {}, {}};
+  Source source{.included = std::move(included)};
   bool opens_namespace = false;
+  bool is_ours = false;
   std::string around;  // what the word before was, if :: joins them
   for (std::size_t at = 0; at < bare.size();) {
     if (!is_of_word(bare[at])) {
@@ -143,9 +145,13 @@ Source parse_source(const std::string& text, std::set<std::string> included) {
     std::string word{bare.begin() + static_cast<std::ptrdiff_t>(at), end};
     at += word.size();
     const bool is_around = bare.compare(at, 2, "::") == 0;
-    // Other people's namespaces are opened to name a class before its header.
-    if (opens_namespace && !is_around && !around.empty()) source.of.insert(word);
-    if (!opens_namespace && !around.empty()) source.names.emplace(around, word);
+    if (opens_namespace) {
+      if (around.empty()) is_ours = word == "recald";
+      if (!is_around) source.opened.insert(word);
+      if (!is_around && is_ours && !around.empty()) source.of.insert(word);
+    } else if (!around.empty()) {
+      source.names.emplace(around, word);
+    }
     source.words.insert(word);
     opens_namespace = word == "namespace" || (opens_namespace && is_around);
     around = is_around ? std::move(word) : std::string{};
@@ -179,12 +185,16 @@ std::vector<std::string> names_from_nowhere(const Sources& sources) {
     std::set<std::string> reached = reached_from(file, sources);
     reached.insert(file);
     for (const auto& [space, name] : source.names) {
-      std::vector<std::string> having = headers[space];
-      std::erase_if(having, [&, &name = name](const std::string& header) {
-        return !sources.at(header).words.contains(name);
-      });
-      const auto is_reached = [&](const std::string& header) { return reached.contains(header); };
-      if (having.empty() || std::ranges::any_of(having, is_reached)) continue;
+      const auto has_it = [&, &name = name](const std::string& header) {
+        return sources.at(header).words.contains(name);
+      };
+      if (std::ranges::none_of(headers[space], has_it)) continue;  // not ours
+      const bool is_declared =
+          std::ranges::any_of(reached, [&, &space = space](const std::string& other) {
+            const auto known = sources.find(other);
+            return known != sources.end() && known->second.opened.contains(space) && has_it(other);
+          });
+      if (is_declared) continue;
       found.push_back(file + " uses " + space + "::" + name);
     }
   }

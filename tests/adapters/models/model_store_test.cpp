@@ -247,7 +247,8 @@ TEST_F(Models, StatusThatIsNoneIsRefused) {
   text.replace(text.find("\"accepted\""), 10, "\"acclaimed\"");
   write_text(file_of(first_), text);
   EXPECT_THAT(sentence(store_.load(first_.version)),
-              HasSubstr("status 'acclaimed' is none of proposed, accepted, retired, reverted"));
+              HasSubstr("'status' is \"acclaimed\"; it must be one of proposed, accepted, retired, "
+                        "reverted"));
 }
 
 TEST_F(Models, DamageIsListedAndOneCanLeaveIt) {

@@ -308,8 +308,10 @@ TEST(RecordBatch, WhatIsNotAsItMustBeIsNamed) {
       {"/events/0/severity", 3, "'severity' is 3; it must lie between 0 and 2"},
       {"/events/0/last", false, "events[0]: 'last' is no whole number"},
       {"/results/0/number", 1, "results[0]: 'number' is 1 after 1; numbers must rise"},
-      {"/results/0/kind", "guess", "results[0]: 'kind' is none of the known ones"},
-      {"/results/0/state", "running", "results[0]: 'state' is none of the known ones"},
+      {"/results/0/kind", "guess",
+       "results[0]: 'kind' is \"guess\"; it must be one of calibration, diagnosis"},
+      {"/results/0/state", "running",
+       "results[0]: 'state' is \"running\"; it must be one of done, failed, cancelled"},
       {"/results/0/accepted", nullptr, "'accepted' is neither true nor false"},
       {"/results/0/document", nullptr, "'document' is no text"}};
   const json good = json::parse(to_json(sample_batch()));
