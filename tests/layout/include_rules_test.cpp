@@ -133,8 +133,8 @@ Source parse_source(const std::string& text, std::set<std::string> included) {
   };
   Source source{.included = std::move(included)};
   bool opens_namespace = false;
-  bool is_ours = false;
   std::string around;  // what the word before was, if :: joins them
+  std::string root;    // the first of words that :: joins
   for (std::size_t at = 0; at < bare.size();) {
     if (!is_of_word(bare[at])) {
       if (bare[at++] == '{') opens_namespace = false;
@@ -145,11 +145,12 @@ Source parse_source(const std::string& text, std::set<std::string> included) {
     std::string word{bare.begin() + static_cast<std::ptrdiff_t>(at), end};
     at += word.size();
     const bool is_around = bare.compare(at, 2, "::") == 0;
+    if (around.empty()) root = word;
+    const bool is_ours = root == "recald";
     if (opens_namespace) {
-      if (around.empty()) is_ours = word == "recald";
       if (!is_around) source.opened.insert(word);
       if (!is_around && is_ours && !around.empty()) source.of.insert(word);
-    } else if (!around.empty()) {
+    } else if (!around.empty() && (is_ours || root == around)) {  // boost::asio::post is not ours
       source.names.emplace(around, word);
     }
     source.words.insert(word);
