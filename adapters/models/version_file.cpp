@@ -145,6 +145,10 @@ Result<ModelVersion> read_version_file(const std::filesystem::path& file) {
   shapes::StrictReader reader{"the version"};
   const auto version = reader.result(reader.read<ModelVersion>(json, "version"));
   if (!version) return damaged(version.error().message);
+  for (const AddedEffect& added : version->effects) {
+    const auto checked = check_numbers(added);
+    if (!checked) return damaged(checked.error().message);
+  }
   if (version->version != file.stem()) return damaged("it names another version than its file");
   return version;
 }

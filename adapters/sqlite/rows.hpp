@@ -12,6 +12,7 @@
 
 #include "adapters/ports/store.hpp"
 #include "adapters/sqlite/database.hpp"
+#include "core/absent.hpp"
 
 namespace recald::sqlite {
 
@@ -19,11 +20,6 @@ inline std::int64_t seconds_of(metering::Instant t) { return t.time_since_epoch(
 inline metering::Instant instant_of(std::int64_t seconds) {
   return metering::Instant{std::chrono::seconds{seconds}};
 }
-
-template <class T>
-inline constexpr bool is_optional = false;
-template <class T>
-inline constexpr bool is_optional<std::optional<T>> = true;
 
 template <class T>
 void bind_value(Statement& statement, int parameter, const T& value) {

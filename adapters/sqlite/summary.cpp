@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "adapters/sqlite/rows.hpp"
 #include "adapters/sqlite/schema.hpp"
 

@@ -123,8 +123,7 @@ void MeterTrack::note_fault(const RegisterField& field, modbus::ValueFault fault
 StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                             PollTime poll, Instant at) {
   StoreBatch batch;
-  if (auto reported = refusals_.take(read, result, at))
-    batch.events.push_back(std::move(*reported));
+  if (auto event = refusals_.take(read, result, at)) batch.events.push_back(std::move(*event));
   if (!result) {
     note_failure(result.error());
     // A field that could not be read no longer has a current value.

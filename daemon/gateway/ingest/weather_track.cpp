@@ -99,8 +99,7 @@ WeatherTrack::Channel* WeatherTrack::channel_of(const std::string& field) {
 StoreBatch WeatherTrack::take(const modbus::PlannedRead& read, const modbus::ReadResult& result,
                               Instant at) {
   StoreBatch batch;
-  if (auto reported = refusals_.take(read, result, at))
-    batch.events.push_back(std::move(*reported));
+  if (auto event = refusals_.take(read, result, at)) batch.events.push_back(std::move(*event));
   if (!result) {
     for (const std::size_t i : read.fields) {
       Channel* const channel = channel_of(fields_[i].name);

@@ -498,8 +498,8 @@ void Gateway::report_pushed(const std::string& meter, const CommitCounts& counts
 void Gateway::report_refusal(const std::string& why) {
   const Moment now = ports_.loop.now();
   if (!why.empty()) {
-    if (refusal_reported_at_ && now.monotonic - *refusal_reported_at_ < kRefusedReadingsEvery)
-      return;
+    const auto known = refusal_reported_at_;
+    if (known && now.monotonic - *known < kRefusedReadingsEvery) return;
     refusal_reported_at_ = now.monotonic;
     is_refusal_reported_ = true;
     note({now.instant(), Severity::error, "store_refuses", "",

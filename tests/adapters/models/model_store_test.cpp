@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "adapters/models/version_file.hpp"
+#include "adapters/system/sha256.hpp"
 #include "tests/adapters/models/sample_version.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -249,6 +251,21 @@ TEST_F(Models, StatusThatIsNoneIsRefused) {
   EXPECT_THAT(sentence(store_.load(first_.version)),
               HasSubstr("'status' is \"acclaimed\"; it must be one of proposed, accepted, retired, "
                         "reverted"));
+}
+
+/// A file that is called by its content, whoever wrote it.
+TEST_F(Models, ANumberThatIsNullIsRefused) {
+  add_two();
+  auto json = nlohmann::json::parse(read_text(file_of(first_)));
+  json["effects"][0]["probability"] = nullptr;
+  nlohmann::json content = json;
+  for (const char* key : {"version", "status", "created_at"}) content.erase(key);
+  system::Sha256 digest;
+  digest.add(content.dump());
+  const std::string name = digest.hex();
+  json["version"] = name;
+  write_text(store_.folder() / (name + ".json"), json.dump());
+  EXPECT_THAT(sentence(store_.load(name)), HasSubstr("one of its numbers is not finite"));
 }
 
 TEST_F(Models, DamageIsListedAndOneCanLeaveIt) {
