@@ -4,7 +4,7 @@
 #include <exception>
 #include <iostream>
 
-#include "daemon/commands/cli.hpp"
+#include "daemon/commands/line/cli.hpp"
 
 int main(int argc, char** argv) {
   // Whoever reads the output may end before it does (| head): the results are written all the same.

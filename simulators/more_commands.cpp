@@ -4,7 +4,7 @@
 #include <chrono>
 #include <iostream>
 
-#include "core/metering/trial_clock.hpp"
+#include "core/metering/registers/trial_clock.hpp"
 #include "simulators/devices/device_plan.hpp"
 #include "simulators/devices/device_service.hpp"
 #include "simulators/exit.hpp"

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "adapters/ports/loop.hpp"
-#include "core/metering/trial_clock.hpp"
+#include "core/metering/registers/trial_clock.hpp"
 
 namespace recald::asio {
 

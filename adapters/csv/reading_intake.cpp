@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "adapters/csv/fields.hpp"
-#include "core/metering/interval_book.hpp"
+#include "core/metering/registers/interval_book.hpp"
 
 namespace recald::csv {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "adapters/csv/line_issues.hpp"
 #include "adapters/csv/other_meters.hpp"
-#include "core/metering/counter.hpp"
 #include "core/metering/reading.hpp"
+#include "core/metering/registers/counter.hpp"
 #include "core/metering/units.hpp"
 #include "core/result.hpp"
 

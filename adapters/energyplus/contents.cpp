@@ -8,8 +8,8 @@
 #include <map>
 #include <tuple>
 
-#include "adapters/energyplus/fields.hpp"
-#include "adapters/sqlite/database.hpp"
+#include "adapters/energyplus/model/fields.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 #include "core/text/ascii.hpp"
 
 namespace recald::energyplus {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adapters/energyplus/known_parameters.hpp"
-#include "adapters/energyplus/model_document.hpp"
+#include "adapters/energyplus/model/model_document.hpp"
 #include "core/result.hpp"
 
 namespace recald::energyplus {

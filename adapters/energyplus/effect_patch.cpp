@@ -10,11 +10,11 @@
 #include <tuple>
 #include <utility>
 
-#include "adapters/energyplus/fields.hpp"
 #include "adapters/energyplus/known_parameters.hpp"
-#include "adapters/energyplus/role_schedules.hpp"
-#include "adapters/energyplus/rooms.hpp"
-#include "adapters/energyplus/schedule_values.hpp"
+#include "adapters/energyplus/model/fields.hpp"
+#include "adapters/energyplus/model/role_schedules.hpp"
+#include "adapters/energyplus/model/rooms.hpp"
+#include "adapters/energyplus/model/schedule_values.hpp"
 #include "core/text/ascii.hpp"
 
 namespace recald::energyplus {

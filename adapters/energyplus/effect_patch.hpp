@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adapters/energyplus/model_document.hpp"
+#include "adapters/energyplus/model/model_document.hpp"
 #include "core/result.hpp"
 
 namespace recald::energyplus {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "adapters/energyplus/known_parameters.hpp"
-#include "adapters/energyplus/meter_output.hpp"
+#include "adapters/energyplus/run/meter_output.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/write_file.hpp"
 #include "core/absent.hpp"

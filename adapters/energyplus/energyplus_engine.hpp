@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "adapters/energyplus/model_document.hpp"
-#include "adapters/energyplus/monthly_output.hpp"
-#include "adapters/energyplus/program.hpp"
-#include "adapters/energyplus/simulation.hpp"
+#include "adapters/energyplus/model/model_document.hpp"
+#include "adapters/energyplus/run/monthly_output.hpp"
+#include "adapters/energyplus/run/program.hpp"
+#include "adapters/energyplus/run/simulation.hpp"
 #include "adapters/energyplus/targeted_parameter.hpp"
 #include "adapters/ports/engine.hpp"
 

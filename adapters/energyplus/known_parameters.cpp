@@ -11,9 +11,9 @@
 #include <set>
 #include <span>
 
-#include "adapters/energyplus/fields.hpp"
-#include "adapters/energyplus/role_schedules.hpp"
-#include "adapters/energyplus/rooms.hpp"
+#include "adapters/energyplus/model/fields.hpp"
+#include "adapters/energyplus/model/role_schedules.hpp"
+#include "adapters/energyplus/model/rooms.hpp"
 #include "core/model/parameter_library.hpp"
 #include "core/text/ascii.hpp"
 #include "core/text/nearest.hpp"

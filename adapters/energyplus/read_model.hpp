@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "adapters/energyplus/model_document.hpp"
-#include "adapters/energyplus/program.hpp"
+#include "adapters/energyplus/model/model_document.hpp"
+#include "adapters/energyplus/run/program.hpp"
 #include "core/result.hpp"
 
 namespace recald::energyplus {

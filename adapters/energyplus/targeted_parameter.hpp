@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adapters/energyplus/effect_patch.hpp"
-#include "adapters/energyplus/model_document.hpp"
+#include "adapters/energyplus/model/model_document.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/model/parameter.hpp"
 

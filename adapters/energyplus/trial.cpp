@@ -6,7 +6,7 @@
 #include <iterator>
 #include <optional>
 
-#include "adapters/energyplus/meter_output.hpp"
+#include "adapters/energyplus/run/meter_output.hpp"
 #include "adapters/system/sha256.hpp"
 #include "adapters/system/write_file.hpp"
 

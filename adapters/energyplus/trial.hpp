@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "adapters/energyplus/component_sizes.hpp"
-#include "adapters/energyplus/model_document.hpp"
-#include "adapters/energyplus/program.hpp"
-#include "adapters/energyplus/simulation.hpp"
+#include "adapters/energyplus/model/component_sizes.hpp"
+#include "adapters/energyplus/model/model_document.hpp"
+#include "adapters/energyplus/run/program.hpp"
+#include "adapters/energyplus/run/simulation.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/result.hpp"
 

@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "adapters/ports/job_result.hpp"
-#include "core/metering/interval_book.hpp"
-#include "core/metering/monthly_figure.hpp"
-#include "core/metering/power_book.hpp"
+#include "core/metering/months/monthly_figure.hpp"
 #include "core/metering/reading.hpp"
+#include "core/metering/registers/interval_book.hpp"
+#include "core/metering/registers/power_book.hpp"
 #include "core/result.hpp"
 
 namespace recald {

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "adapters/report/report_data.hpp"
-#include "core/diagnosis/gap.hpp"
-#include "core/diagnosis/locate.hpp"
+#include "core/diagnosis/check/gap.hpp"
+#include "core/diagnosis/evidence/locate.hpp"
+#include "core/diagnosis/evidence/residual_map.hpp"
 #include "core/diagnosis/model_version.hpp"
-#include "core/diagnosis/monthly_vote.hpp"
 #include "core/diagnosis/naming.hpp"
-#include "core/diagnosis/residual_map.hpp"
+#include "core/diagnosis/naming/monthly_vote.hpp"
 
 namespace recald::report {
 

@@ -14,12 +14,12 @@
 
 #include "core/absent.hpp"
 #include "core/assessment/output_assessment.hpp"
-#include "core/calibration/summary.hpp"
+#include "core/calibration/posterior/summary.hpp"
 #include "core/display/unit.hpp"
 #include "core/display/warning.hpp"
 #include "core/metering/civil_time.hpp"
-#include "core/metering/data_quality.hpp"
-#include "core/metering/monthly_figure.hpp"
+#include "core/metering/months/data_quality.hpp"
+#include "core/metering/months/monthly_figure.hpp"
 #include "core/model/prior.hpp"
 #include "core/tariff/tariff.hpp"
 

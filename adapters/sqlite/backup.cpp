@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "adapters/sqlite/damage.hpp"
-#include "adapters/sqlite/handles.hpp"
+#include "adapters/sqlite/tables/handles.hpp"
 #include "adapters/system/durable_names.hpp"
 #include "adapters/system/regular_file.hpp"
 

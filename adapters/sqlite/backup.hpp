@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "adapters/ports/store.hpp"
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 
 namespace recald::sqlite {
 

@@ -4,11 +4,11 @@
 
 #include <utility>
 
-#include "adapters/sqlite/outbox_table.hpp"
-#include "adapters/sqlite/register_json.hpp"
-#include "adapters/sqlite/rows.hpp"
-#include "adapters/sqlite/tables.hpp"
-#include "core/metering/placement.hpp"
+#include "adapters/sqlite/tables/outbox_table.hpp"
+#include "adapters/sqlite/tables/register_json.hpp"
+#include "adapters/sqlite/tables/rows.hpp"
+#include "adapters/sqlite/tables/tables.hpp"
+#include "core/metering/registers/placement.hpp"
 
 namespace recald::sqlite {
 

@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "adapters/sqlite/schema.hpp"
-#include "adapters/sqlite/tables.hpp"
+#include "adapters/sqlite/tables/schema.hpp"
+#include "adapters/sqlite/tables/tables.hpp"
 
 namespace recald::sqlite {
 namespace {

@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <string>
 
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 
 namespace recald::sqlite {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "adapters/sqlite/rows.hpp"
+#include "adapters/sqlite/tables/rows.hpp"
 
 namespace recald::sqlite {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 
 namespace recald::sqlite {
 

@@ -6,17 +6,17 @@
 #include <utility>
 
 #include "adapters/sqlite/backup.hpp"
-#include "adapters/sqlite/edit_table.hpp"
-#include "adapters/sqlite/forecast_table.hpp"
-#include "adapters/sqlite/job_table.hpp"
-#include "adapters/sqlite/month_table.hpp"
-#include "adapters/sqlite/outbox_table.hpp"
-#include "adapters/sqlite/register_json.hpp"
 #include "adapters/sqlite/row_checks.hpp"
-#include "adapters/sqlite/rows.hpp"
-#include "adapters/sqlite/sample_table.hpp"
-#include "adapters/sqlite/schema.hpp"
-#include "adapters/sqlite/tables.hpp"
+#include "adapters/sqlite/tables/edit_table.hpp"
+#include "adapters/sqlite/tables/forecast_table.hpp"
+#include "adapters/sqlite/tables/job_table.hpp"
+#include "adapters/sqlite/tables/month_table.hpp"
+#include "adapters/sqlite/tables/outbox_table.hpp"
+#include "adapters/sqlite/tables/register_json.hpp"
+#include "adapters/sqlite/tables/rows.hpp"
+#include "adapters/sqlite/tables/sample_table.hpp"
+#include "adapters/sqlite/tables/schema.hpp"
+#include "adapters/sqlite/tables/tables.hpp"
 
 namespace recald::sqlite {
 

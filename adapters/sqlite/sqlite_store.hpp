@@ -8,7 +8,7 @@
 
 #include "adapters/ports/store.hpp"
 #include "adapters/sqlite/batch_writer.hpp"
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 
 namespace recald::sqlite {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adapters/sqlite/rows.hpp"
+#include "adapters/sqlite/tables/rows.hpp"
 
 namespace recald::sqlite {
 

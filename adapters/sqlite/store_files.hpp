@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 #include "core/metering/reading.hpp"
 
 namespace recald::sqlite {

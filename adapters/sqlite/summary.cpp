@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "adapters/sqlite/rows.hpp"
-#include "adapters/sqlite/schema.hpp"
+#include "adapters/sqlite/tables/rows.hpp"
+#include "adapters/sqlite/tables/schema.hpp"
 
 namespace recald::sqlite {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "adapters/ports/store.hpp"
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 
 namespace recald::sqlite {
 

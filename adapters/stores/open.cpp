@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "adapters/sqlite/recovery.hpp"
-#include "adapters/sqlite/restoration.hpp"
+#include "adapters/sqlite/recovery/recovery.hpp"
+#include "adapters/sqlite/recovery/restoration.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/sqlite/summary.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "core/absent.hpp"
 #include "core/calibration/cut_sampling.hpp"
-#include "core/calibration/samplers.hpp"
+#include "core/calibration/samplers/samplers.hpp"
 #include "core/model/model_adaptors.hpp"
 
 namespace recald::assessment {

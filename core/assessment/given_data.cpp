@@ -7,9 +7,9 @@
 #include "core/absent.hpp"
 #include "core/assessment/level_forecast.hpp"
 #include "core/assessment/spread.hpp"
-#include "core/calibration/leave_out.hpp"
-#include "core/calibration/points_at_draw.hpp"
-#include "core/calibration/psis.hpp"
+#include "core/calibration/checks/leave_out.hpp"
+#include "core/calibration/checks/psis.hpp"
+#include "core/calibration/posterior/points_at_draw.hpp"
 
 namespace recald::assessment {
 namespace {

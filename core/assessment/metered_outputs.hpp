@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/assessment/assessed_calibration.hpp"
-#include "core/metering/level_change.hpp"
-#include "core/metering/monthly_figure.hpp"
+#include "core/metering/months/level_change.hpp"
+#include "core/metering/months/monthly_figure.hpp"
 
 namespace recald::assessment {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/calibration/emulator.hpp"
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/posterior/emulator.hpp"
+#include "core/calibration/posterior/posterior.hpp"
 #include "core/calibration/posterior_findings.hpp"
 #include "core/design/latin_hypercube.hpp"
 #include "core/design/model_runs.hpp"

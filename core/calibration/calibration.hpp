@@ -13,16 +13,16 @@
 #include <variant>
 #include <vector>
 
-#include "core/calibration/bridge.hpp"
-#include "core/calibration/draws.hpp"
-#include "core/calibration/findings.hpp"
-#include "core/calibration/hyper_prior.hpp"
-#include "core/calibration/leave_out.hpp"
-#include "core/calibration/normalisation.hpp"
+#include "core/calibration/checks/bridge.hpp"
+#include "core/calibration/checks/leave_out.hpp"
+#include "core/calibration/checks/weak_directions.hpp"
+#include "core/calibration/covariance/hyper_prior.hpp"
+#include "core/calibration/posterior/draws.hpp"
+#include "core/calibration/posterior/findings.hpp"
+#include "core/calibration/posterior/normalisation.hpp"
+#include "core/calibration/posterior/problem.hpp"
 #include "core/calibration/predictive.hpp"
-#include "core/calibration/problem.hpp"
 #include "core/calibration/sampling.hpp"
-#include "core/calibration/weak_directions.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/result.hpp"
 

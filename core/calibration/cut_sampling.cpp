@@ -3,7 +3,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/calibration/dram.hpp"
+#include "core/calibration/samplers/dram.hpp"
 #include "core/model/model_adaptors.hpp"
 #include "core/random/streams.hpp"
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/calibration/cholesky.hpp"
-#include "core/calibration/log_sum.hpp"
+#include "core/calibration/covariance/cholesky.hpp"
+#include "core/calibration/samplers/log_sum.hpp"
 
 namespace recald::calibration {
 namespace {

@@ -1,7 +1,7 @@
 /// Lets the particles of a population jump between the modes of a posterior.
 #pragma once
 
-#include "core/calibration/sampler.hpp"
+#include "core/calibration/samplers/sampler.hpp"
 
 namespace recald::calibration {
 

@@ -4,13 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "core/calibration/bridge.hpp"
-#include "core/calibration/draws.hpp"
-#include "core/calibration/findings.hpp"
-#include "core/calibration/hyper_prior.hpp"
-#include "core/calibration/normalisation.hpp"
+#include "core/calibration/checks/bridge.hpp"
+#include "core/calibration/covariance/hyper_prior.hpp"
+#include "core/calibration/posterior/draws.hpp"
+#include "core/calibration/posterior/findings.hpp"
+#include "core/calibration/posterior/normalisation.hpp"
+#include "core/calibration/posterior/summary.hpp"
 #include "core/calibration/sampling.hpp"
-#include "core/calibration/summary.hpp"
 #include "core/model/parameter.hpp"
 
 namespace recald::calibration {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/calibration/points_at_draw.hpp"
+#include "core/calibration/posterior/points_at_draw.hpp"
 #include "core/random/rng.hpp"
 #include "core/random/streams.hpp"
 

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/calibration/draws.hpp"
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/posterior/draws.hpp"
+#include "core/calibration/posterior/posterior.hpp"
 #include "core/calibration/sampling.hpp"
 #include "core/result.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "core/calibration/mode_jumps.hpp"
 #include "core/calibration/posterior_findings.hpp"
-#include "core/calibration/smc.hpp"
+#include "core/calibration/samplers/smc.hpp"
 #include "core/random/streams.hpp"
 
 namespace recald::calibration {

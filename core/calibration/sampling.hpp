@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/absent.hpp"
-#include "core/calibration/draws.hpp"
-#include "core/calibration/findings.hpp"
-#include "core/calibration/posterior.hpp"
-#include "core/calibration/samplers.hpp"
-#include "core/calibration/summary.hpp"
+#include "core/calibration/posterior/draws.hpp"
+#include "core/calibration/posterior/findings.hpp"
+#include "core/calibration/posterior/posterior.hpp"
+#include "core/calibration/posterior/summary.hpp"
+#include "core/calibration/samplers/samplers.hpp"
 #include "core/executor.hpp"
 #include "core/result.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/ground.hpp"
-#include "core/diagnosis/signature_fit.hpp"
+#include "core/diagnosis/check/ground.hpp"
+#include "core/diagnosis/naming/signature_fit.hpp"
 
 namespace recald::diagnosis {
 namespace {

@@ -15,8 +15,8 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "core/diagnosis/observations.hpp"
-#include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/evidence/observations.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
 #include "core/result.hpp"
 
 namespace recald::diagnosis {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "core/diagnosis/candidate_shapes.hpp"
-#include "core/diagnosis/learnt_names.hpp"
-#include "core/diagnosis/monthly_impact.hpp"
+#include "core/diagnosis/evidence/candidate_shapes.hpp"
+#include "core/diagnosis/evidence/monthly_impact.hpp"
+#include "core/diagnosis/naming/learnt_names.hpp"
 #include "core/display/id_words.hpp"
 #include "core/random/rng.hpp"
 #include "core/random/streams.hpp"

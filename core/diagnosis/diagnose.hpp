@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnosis/gap.hpp"
-#include "core/diagnosis/locate.hpp"
+#include "core/diagnosis/check/gap.hpp"
+#include "core/diagnosis/evidence/locate.hpp"
 #include "core/diagnosis/naming.hpp"
 #include "core/display/warning.hpp"
 #include "core/executor.hpp"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
-#include "core/diagnosis/candidate_shapes.hpp"
+#include "core/diagnosis/check/gap.hpp"
 #include "core/diagnosis/effect_posterior.hpp"
-#include "core/diagnosis/gap.hpp"
+#include "core/diagnosis/evidence/candidate_shapes.hpp"
 
 namespace recald::diagnosis {
 namespace {

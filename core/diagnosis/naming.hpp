@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnosis/ground.hpp"
-#include "core/diagnosis/held_scores.hpp"
-#include "core/diagnosis/signature_names.hpp"
+#include "core/diagnosis/check/ground.hpp"
+#include "core/diagnosis/check/held_scores.hpp"
+#include "core/diagnosis/naming/signature_names.hpp"
 
 namespace recald::diagnosis {
 

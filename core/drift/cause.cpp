@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "core/absent.hpp"
-#include "core/calibration/log_sum.hpp"
+#include "core/calibration/samplers/log_sum.hpp"
 #include "core/random/rng.hpp"
 #include "core/random/streams.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/posterior/posterior.hpp"
 #include "core/drift/prequential.hpp"
 #include "core/drift/sequential.hpp"
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/absent.hpp"
-#include "core/calibration/emulator.hpp"
-#include "core/calibration/hyper_prior.hpp"
+#include "core/calibration/covariance/hyper_prior.hpp"
+#include "core/calibration/posterior/emulator.hpp"
 #include "core/design/model_runs.hpp"
 
 namespace recald::drift {

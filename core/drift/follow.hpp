@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/calibration/calibration.hpp"
-#include "core/drift/daily_watches.hpp"
+#include "core/drift/daily/daily_watches.hpp"
 #include "core/drift/followed_data.hpp"
 #include "core/drift/inquiries.hpp"
 #include "core/drift/sequential.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/absent.hpp"
-#include "core/calibration/emulator.hpp"
+#include "core/calibration/posterior/emulator.hpp"
 
 namespace recald::drift {
 namespace {

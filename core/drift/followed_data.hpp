@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/assessment/assessed_calibration.hpp"
-#include "core/calibration/normalisation.hpp"
-#include "core/calibration/posterior.hpp"
-#include "core/calibration/problem.hpp"
+#include "core/calibration/posterior/normalisation.hpp"
+#include "core/calibration/posterior/posterior.hpp"
+#include "core/calibration/posterior/problem.hpp"
 #include "core/drift/prequential.hpp"
 #include "core/model/monthly_model.hpp"
 

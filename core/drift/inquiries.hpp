@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/calibration/hyper_prior.hpp"
+#include "core/calibration/covariance/hyper_prior.hpp"
 #include "core/drift/cause.hpp"
-#include "core/drift/daily_watches.hpp"
+#include "core/drift/daily/daily_watches.hpp"
 #include "core/drift/named_change.hpp"
 #include "core/drift/prequential.hpp"
 #include "core/drift/site_drift.hpp"

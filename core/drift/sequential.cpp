@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "core/calibration/conditional.hpp"
-#include "core/calibration/log_sum.hpp"
-#include "core/calibration/smc.hpp"
+#include "core/calibration/covariance/conditional.hpp"
+#include "core/calibration/samplers/log_sum.hpp"
+#include "core/calibration/samplers/smc.hpp"
 #include "core/random/streams.hpp"
 
 namespace recald::drift {

@@ -10,8 +10,8 @@
 
 #include "core/absent.hpp"
 #include "core/assessment/forecast.hpp"
-#include "core/calibration/particles.hpp"
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/posterior/posterior.hpp"
+#include "core/calibration/samplers/particles.hpp"
 #include "core/random/rng.hpp"
 #include "core/result.hpp"
 

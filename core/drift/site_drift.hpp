@@ -9,7 +9,7 @@
 #include "core/display/unit.hpp"
 #include "core/display/warning.hpp"
 #include "core/drift/cause.hpp"
-#include "core/drift/daily_watches.hpp"
+#include "core/drift/daily/daily_watches.hpp"
 #include "core/drift/prequential.hpp"
 #include "core/drift/shift.hpp"
 #include "core/drift/watch.hpp"

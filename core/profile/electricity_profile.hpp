@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/metering/month_slots.hpp"
+#include "core/metering/months/month_slots.hpp"
 #include "core/model/drivers.hpp"
 #include "core/model/schedule.hpp"
 #include "core/result.hpp"

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/posterior/posterior.hpp"
 
 namespace recald::savings {
 namespace {

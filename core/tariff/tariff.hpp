@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/metering/monthly_figure.hpp"
+#include "core/metering/months/monthly_figure.hpp"
 #include "core/metering/reading.hpp"
 #include "core/model/schedule.hpp"
 #include "core/profile/electricity_profile.hpp"

@@ -12,7 +12,7 @@
 #include <functional>
 #include <memory>
 
-#include "core/metering/trial_clock.hpp"
+#include "core/metering/registers/trial_clock.hpp"
 #include "simulators/devices/device_endpoint.hpp"
 
 namespace recald::simulators {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/metering/trial_clock.hpp"
+#include "core/metering/registers/trial_clock.hpp"
 #include "core/result.hpp"
 #include "simulators/devices/device_endpoint.hpp"
 #include "simulators/devices/device_plan.hpp"

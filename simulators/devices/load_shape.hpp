@@ -4,7 +4,7 @@
 #include <chrono>
 #include <vector>
 
-#include "core/metering/trial_clock.hpp"
+#include "core/metering/registers/trial_clock.hpp"
 
 namespace recald::simulators {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "simulators/building/calendar.hpp"
-#include "simulators/energyplus/building_parts.hpp"
-#include "simulators/energyplus/schedule_year.hpp"
+#include "simulators/energyplus/parts/building_parts.hpp"
+#include "simulators/energyplus/parts/schedule_year.hpp"
 #include "simulators/energyplus/weather_files.hpp"
 
 namespace recald::simulators::energyplus {

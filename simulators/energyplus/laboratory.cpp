@@ -1,6 +1,6 @@
 #include "simulators/energyplus/laboratory.hpp"
 
-#include "simulators/energyplus/air_handler.hpp"
+#include "simulators/energyplus/parts/air_handler.hpp"
 
 namespace recald::simulators::energyplus {
 namespace {

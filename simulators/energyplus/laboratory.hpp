@@ -10,7 +10,7 @@
 
 #include <array>
 
-#include "simulators/energyplus/habits.hpp"
+#include "simulators/energyplus/parts/habits.hpp"
 
 namespace recald::simulators::energyplus {
 

@@ -2,7 +2,7 @@
 /// need many runs.
 #pragma once
 
-#include "simulators/energyplus/habits.hpp"
+#include "simulators/energyplus/parts/habits.hpp"
 
 namespace recald::simulators::energyplus {
 

@@ -4,7 +4,7 @@
 /// @see EnergyPlus 25.2, Input Output Reference, "Group – HVAC Templates".
 #pragma once
 
-#include "simulators/energyplus/rooms_by_shape.hpp"
+#include "simulators/energyplus/parts/rooms_by_shape.hpp"
 
 namespace recald::simulators::energyplus {
 

@@ -30,10 +30,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/calibration/diagnostics.hpp"
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
+#include "core/calibration/posterior/posterior.hpp"
+#include "core/calibration/samplers/seed_rwm.hpp"
 #include "core/calibration/sampling.hpp"
-#include "core/calibration/seed_rwm.hpp"
 #include "tests/core/calibration/seedcase.hpp"
 
 namespace {

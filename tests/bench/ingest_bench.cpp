@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "adapters/csv/readings_csv.hpp"
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/month_closer.hpp"
 #include "core/random/rng.hpp"
 
 namespace {

@@ -14,9 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/calibration/diagnostics.hpp"
-#include "core/calibration/particles.hpp"
-#include "core/calibration/samplers.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
+#include "core/calibration/samplers/particles.hpp"
+#include "core/calibration/samplers/samplers.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
 /// Commands, exit codes, sentences: hourly readings of a first quarter, alternating 40 and 60 kW of
 /// electricity and 20 and 30 kWh of heat, so that a day is 1200 and 600 kWh.
-#include "daemon/commands/cli.hpp"
+#include "daemon/commands/line/cli.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

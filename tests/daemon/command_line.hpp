@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/commands/cli.hpp"
+#include "daemon/commands/line/cli.hpp"
 
 namespace recald::daemon::testing {
 

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <thread>
 
-#include "adapters/energyplus/program.hpp"
+#include "adapters/energyplus/run/program.hpp"
 #include "adapters/system/child_process.hpp"
 #include "adapters/system/file_lock.hpp"
 #include "command_line.hpp"

@@ -8,7 +8,7 @@
 #include "adapters/csv/weather_csv.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
-#include "daemon/gateway/serve/served.hpp"
+#include "daemon/gateway/serve/api/served.hpp"
 #include "daemon/site/replay/sensor_weather.hpp"
 #include "daemon/site/replay/site_weather.hpp"
 #include "daemon/site/replay/stored_readings.hpp"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
 #include "core/metering/civil_time.hpp"
 #include "tests/support/temporary_folder.hpp"
 

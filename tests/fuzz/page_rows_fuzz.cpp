@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "adapters/sqlite/page_rows.hpp"
+#include "adapters/sqlite/recovery/page_rows.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace recald::fuzz {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "daemon/gateway/serve/pushed_readings.hpp"
+#include "daemon/gateway/serve/api/pushed_readings.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace recald::fuzz {

@@ -62,7 +62,7 @@ bool is_allowed(std::string_view from, std::string_view to) {
   if (is_below(to, "adapters/sqlite")) {
     // EnergyPlus writes its results in one such file.
     const bool reads_results =
-        is_below(from, "adapters/energyplus") && to == "adapters/sqlite/database.hpp";
+        is_below(from, "adapters/energyplus") && to == "adapters/sqlite/tables/database.hpp";
     return is_below(from, "adapters/sqlite") || is_below(from, "adapters/stores") || reads_results;
   }
   if (is_below(from, "simulators")) {

@@ -30,16 +30,16 @@ TEST(IncludeRules, HoldForThisTree) {
 }
 
 TEST(IncludeRules, ArrowsPointDownTheWingsAndTheirRooms) {
-  EXPECT_THAT(
-      forbidden_arrows({{"daemon/gateway/run/gateway.cpp",
-                         {"core/result.hpp", "adapters/ports/store.hpp",
-                          "daemon/site/config/site_config.hpp", "daemon/gateway/serve/served.hpp"}},
-                        {"daemon/main.cpp", {"daemon/commands/cli.hpp"}}}),
-      IsEmpty());
-  EXPECT_THAT(
-      forbidden_arrows({{"daemon/gateway/serve/served.hpp", {"daemon/gateway/run/gateway.hpp"}}}),
-      ElementsAre("daemon/gateway/serve/served.hpp must not include "
-                  "daemon/gateway/run/gateway.hpp"));
+  EXPECT_THAT(forbidden_arrows(
+                  {{"daemon/gateway/run/gateway.cpp",
+                    {"core/result.hpp", "adapters/ports/store.hpp",
+                     "daemon/site/config/site_config.hpp", "daemon/gateway/serve/api/served.hpp"}},
+                   {"daemon/main.cpp", {"daemon/commands/line/cli.hpp"}}}),
+              IsEmpty());
+  EXPECT_THAT(forbidden_arrows(
+                  {{"daemon/gateway/serve/api/served.hpp", {"daemon/gateway/run/gateway.hpp"}}}),
+              ElementsAre("daemon/gateway/serve/api/served.hpp must not include "
+                          "daemon/gateway/run/gateway.hpp"));
   EXPECT_EQ(forbidden_arrows({{"daemon/site/model/a.cpp", {"daemon/site/results/b.hpp"}},
                               {"daemon/site/results/b.cpp", {"daemon/gateway/poll/c.hpp"}},
                               {"adapters/csv/d.cpp", {"daemon/site/config/e.hpp"}},
@@ -53,12 +53,13 @@ TEST(IncludeRules, AFolderWithoutAPlaceInTheOrderIsRefused) {
 }
 
 TEST(IncludeRules, OneRoomKnowsWhatKeepsAStore) {
-  EXPECT_THAT(forbidden_arrows({{"adapters/stores/open.cpp", {"adapters/sqlite/sqlite_store.hpp"}},
-                                {"adapters/sqlite/backup.cpp", {"adapters/sqlite/handles.hpp"}},
-                                {"adapters/energyplus/a.cpp", {"adapters/sqlite/database.hpp"}}}),
-              IsEmpty());
+  EXPECT_THAT(
+      forbidden_arrows({{"adapters/stores/open.cpp", {"adapters/sqlite/sqlite_store.hpp"}},
+                        {"adapters/sqlite/backup.cpp", {"adapters/sqlite/tables/handles.hpp"}},
+                        {"adapters/energyplus/a.cpp", {"adapters/sqlite/tables/database.hpp"}}}),
+      IsEmpty());
   EXPECT_EQ(forbidden_arrows({{"daemon/gateway/run/a.cpp", {"adapters/sqlite/sqlite_store.hpp"}},
-                              {"adapters/models/b.cpp", {"adapters/sqlite/database.hpp"}}})
+                              {"adapters/models/b.cpp", {"adapters/sqlite/tables/database.hpp"}}})
                 .size(),
             2u);
 }

@@ -44,7 +44,7 @@ def main():
     lists = {name: numbers(part) for name, part in zip(("effect", "none", "unknown"), np.split(weights, (effect, effect + site)))}
     pathlib.Path(out).write_text(f"""// Written by tests/naming/learn.py.
 {textwrap.fill(provenance, 98, initial_indent="// ", subsequent_indent="// ")}
-#include "core/diagnosis/learnt_names.hpp"
+#include "core/diagnosis/naming/learnt_names.hpp"
 
 #include <array>
 #include <cstdint>

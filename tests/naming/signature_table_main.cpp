@@ -17,8 +17,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/diagnosis/signature_fit.hpp"
-#include "core/diagnosis/signature_names.hpp"
+#include "core/diagnosis/naming/signature_fit.hpp"
+#include "core/diagnosis/naming/signature_names.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/model/modelled_site.hpp"

@@ -21,7 +21,7 @@ from binomial import binomial  # noqa: E402
 
 PENALTY = 1.0
 BINS = ((0.1, "above 10 %"), (0.03, "3 to 10 %"), (0.01, "1 to 3 %"), (0.0, "below 1 %"))
-# As core/diagnosis/signature_names.hpp has them.
+# As core/diagnosis/naming/signature_names.hpp has them.
 FEATURES = ["log gain", "its root", "root of share explained", "share explained", "wrong sign", "too much", "too little",
             "visibility", "behind the best"]
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 
 namespace recald::testing {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
 #include "tests/support/sample_building.hpp"
 
 namespace recald::testing {

@@ -8,8 +8,8 @@
 #include <regex>
 #include <set>
 
-#include "adapters/sqlite/schema.hpp"
-#include "adapters/sqlite/tables.hpp"
+#include "adapters/sqlite/tables/schema.hpp"
+#include "adapters/sqlite/tables/tables.hpp"
 #include "core/metering/civil_time.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "tests/support/background_process.hpp"

@@ -4,7 +4,7 @@
 #include "core/absent.hpp"
 #include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
-#include "core/diagnosis/spanned_days.hpp"
+#include "core/diagnosis/effects/support/spanned_days.hpp"
 
 namespace recald::diagnosis::effects {
 

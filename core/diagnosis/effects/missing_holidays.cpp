@@ -7,7 +7,7 @@
 #include "core/absent.hpp"
 #include "core/diagnosis/effects/support/alterations.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
-#include "core/diagnosis/public_holidays.hpp"
+#include "core/diagnosis/effects/support/public_holidays.hpp"
 
 namespace recald::diagnosis::effects {
 namespace {

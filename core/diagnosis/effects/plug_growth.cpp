@@ -1,6 +1,6 @@
 /// The number of plugged-in devices grows or shrinks every year.
 #include "core/diagnosis/effects/support/alterations.hpp"
-#include "core/diagnosis/spanned_days.hpp"
+#include "core/diagnosis/effects/support/spanned_days.hpp"
 
 namespace recald::diagnosis::effects {
 

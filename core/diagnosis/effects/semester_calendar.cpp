@@ -1,8 +1,8 @@
 /// Fewer people in term breaks.
 #include <chrono>
 
-#include "core/diagnosis/date_table.hpp"
 #include "core/diagnosis/effects/support/alterations.hpp"
+#include "core/diagnosis/effects/support/date_table.hpp"
 #include "core/diagnosis/effects/support/presence.hpp"
 #include "core/diagnosis/effects/support/priors.hpp"
 

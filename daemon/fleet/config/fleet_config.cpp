@@ -7,7 +7,7 @@
 
 #include "adapters/system/read_file.hpp"
 #include "adapters/toml/toml_reader.hpp"
-#include "daemon/site/config/server_access.hpp"
+#include "daemon/site/config/service/server_access.hpp"
 
 namespace recald::daemon {
 namespace {

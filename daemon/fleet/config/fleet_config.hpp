@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/site/config/broker_config.hpp"
-#include "daemon/site/config/service_config.hpp"
+#include "daemon/site/config/service/broker_config.hpp"
+#include "daemon/site/config/service/service_config.hpp"
 
 namespace recald::daemon {
 

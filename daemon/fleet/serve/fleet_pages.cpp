@@ -16,12 +16,12 @@
 #include "adapters/report/html.hpp"
 #include "daemon/fleet/serve/job_json.hpp"
 #include "daemon/fleet/serve/portfolio.hpp"
-#include "daemon/gateway/serve/page_frame.hpp"
-#include "daemon/gateway/serve/page_script.hpp"
-#include "daemon/gateway/serve/page_style.hpp"
-#include "daemon/gateway/serve/parameters.hpp"
-#include "daemon/gateway/serve/prometheus_text.hpp"
-#include "daemon/gateway/serve/result_response.hpp"
+#include "daemon/gateway/serve/api/parameters.hpp"
+#include "daemon/gateway/serve/api/prometheus_text.hpp"
+#include "daemon/gateway/serve/api/result_response.hpp"
+#include "daemon/gateway/serve/pages/page_frame.hpp"
+#include "daemon/gateway/serve/pages/page_script.hpp"
+#include "daemon/gateway/serve/pages/page_style.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/display/id_words.hpp"
-#include "daemon/site/config/alert_kinds.hpp"
+#include "daemon/site/config/service/alert_kinds.hpp"
 
 namespace recald::daemon {
 namespace {

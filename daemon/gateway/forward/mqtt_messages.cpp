@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/gateway/forward/outgoing_names.hpp"
-#include "daemon/gateway/serve/shapes.hpp"
+#include "daemon/gateway/serve/api/shapes.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "adapters/mqtt/connection.hpp"
 #include "adapters/ports/store.hpp"
-#include "daemon/site/config/broker_config.hpp"
+#include "daemon/site/config/service/broker_config.hpp"
 
 namespace recald::daemon {
 

@@ -13,7 +13,7 @@
 
 #include "adapters/mqtt/connection.hpp"
 #include "adapters/record/record_batch.hpp"
-#include "daemon/site/config/broker_config.hpp"
+#include "daemon/site/config/service/broker_config.hpp"
 
 namespace recald::daemon {
 

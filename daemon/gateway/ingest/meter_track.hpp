@@ -12,7 +12,7 @@
 
 #include "adapters/modbus/register_map.hpp"
 #include "adapters/ports/store.hpp"
-#include "core/metering/usual_day.hpp"
+#include "core/metering/months/usual_day.hpp"
 #include "daemon/gateway/ingest/power_watch.hpp"
 #include "daemon/gateway/ingest/refusal_watch.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/metering/closing_rules.hpp"
+#include "core/metering/months/closing_rules.hpp"
 
 namespace recald::daemon {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adapters/ports/store.hpp"
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/month_closer.hpp"
 
 namespace recald::daemon {
 

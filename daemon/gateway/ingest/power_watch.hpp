@@ -5,8 +5,8 @@
 #include <string>
 
 #include "adapters/ports/store.hpp"
-#include "core/metering/power_book.hpp"
-#include "core/metering/power_check.hpp"
+#include "core/metering/registers/power_book.hpp"
+#include "core/metering/registers/power_check.hpp"
 
 namespace recald::daemon {
 

@@ -8,7 +8,7 @@
 #include "daemon/gateway/ingest/meter_watch.hpp"
 #include "daemon/gateway/registers/drift_facts.hpp"
 #include "daemon/gateway/registers/register_table.hpp"
-#include "daemon/gateway/serve/readiness.hpp"
+#include "daemon/gateway/serve/api/readiness.hpp"
 #include "daemon/site/model/month_hindcast.hpp"
 
 namespace recald::daemon {

@@ -12,7 +12,7 @@
 #include "adapters/ports/loop.hpp"
 #include "daemon/gateway/registers/month_so_far.hpp"
 #include "daemon/gateway/registers/register_facts.hpp"
-#include "daemon/gateway/serve/served.hpp"
+#include "daemon/gateway/serve/api/served.hpp"
 
 namespace recald::daemon {
 

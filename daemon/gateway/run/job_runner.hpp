@@ -15,7 +15,7 @@
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
 #include "daemon/gateway/run/job_watch.hpp"
-#include "daemon/gateway/serve/served.hpp"
+#include "daemon/gateway/serve/api/served.hpp"
 
 namespace recald::daemon {
 

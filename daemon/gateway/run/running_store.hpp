@@ -10,7 +10,7 @@
 
 #include "adapters/stores/open.hpp"
 #include "adapters/system/file_lock.hpp"
-#include "daemon/site/config/store_config.hpp"
+#include "daemon/site/config/service/store_config.hpp"
 
 namespace recald::daemon {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/metering/trial_clock.hpp"
+#include "core/metering/registers/trial_clock.hpp"
 #include "core/result.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 

@@ -12,7 +12,7 @@
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/month_closer.hpp"
 
 namespace recald::daemon {
 

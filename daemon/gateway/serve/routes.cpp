@@ -6,13 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/gateway/serve/api.hpp"
-#include "daemon/gateway/serve/csv_answer.hpp"
-#include "daemon/gateway/serve/metrics.hpp"
+#include "daemon/gateway/serve/api/api.hpp"
+#include "daemon/gateway/serve/api/csv_answer.hpp"
+#include "daemon/gateway/serve/api/metrics.hpp"
+#include "daemon/gateway/serve/api/readiness.hpp"
+#include "daemon/gateway/serve/api/served.hpp"
 #include "daemon/gateway/serve/openapi.hpp"
-#include "daemon/gateway/serve/pages.hpp"
-#include "daemon/gateway/serve/readiness.hpp"
-#include "daemon/gateway/serve/served.hpp"
+#include "daemon/gateway/serve/pages/pages.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "adapters/http/server.hpp"
-#include "daemon/gateway/serve/served.hpp"
-#include "daemon/site/config/service_config.hpp"
+#include "daemon/gateway/serve/api/served.hpp"
+#include "daemon/site/config/service/service_config.hpp"
 
 namespace recald::daemon {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/metering/civil_time.hpp"
-#include "daemon/site/config/store_config.hpp"
+#include "daemon/site/config/service/store_config.hpp"
 
 namespace recald::daemon {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "adapters/ports/store.hpp"
-#include "daemon/site/config/store_config.hpp"
+#include "daemon/site/config/service/store_config.hpp"
 
 namespace recald::daemon {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "adapters/stores/open.hpp"
-#include "daemon/site/config/store_config.hpp"
+#include "daemon/site/config/service/store_config.hpp"
 
 namespace recald::daemon {
 

@@ -15,7 +15,7 @@
 #include "adapters/ports/worker.hpp"
 #include "adapters/system/reserved_space.hpp"
 #include "core/metering/civil_time.hpp"
-#include "daemon/site/config/store_config.hpp"
+#include "daemon/site/config/service/store_config.hpp"
 
 namespace recald::daemon {
 

@@ -16,7 +16,7 @@
 #include <variant>
 
 #include "adapters/toml/toml_reader.hpp"
-#include "core/calibration/hyper_prior.hpp"
+#include "core/calibration/covariance/hyper_prior.hpp"
 
 namespace recald::daemon {
 

@@ -14,7 +14,7 @@
 #include "adapters/toml/toml_reader.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/site/config/building_config.hpp"
-#include "daemon/site/config/site_path.hpp"
+#include "daemon/site/config/service/site_path.hpp"
 #include "daemon/site/config/tariff_config.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/diagnosis/diagnose.hpp"
-#include "core/diagnosis/monthly_vote.hpp"
+#include "core/diagnosis/naming/monthly_vote.hpp"
 #include "core/result.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/diagnosis/monthly_effect.hpp"
+#include "core/diagnosis/evidence/monthly_effect.hpp"
 #include "core/model/model_adaptors.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/diagnose/held_figures.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/diagnosis/diagnose.hpp"
-#include "core/diagnosis/monthly_vote.hpp"
+#include "core/diagnosis/naming/monthly_vote.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"

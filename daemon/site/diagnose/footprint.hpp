@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 
-#include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"
 

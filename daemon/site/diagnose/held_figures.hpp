@@ -1,8 +1,8 @@
 /// A site's monthly figures, as a monthly model's vote on a diagnosis reads them.
 #pragma once
 
-#include "core/diagnosis/monthly_vote.hpp"
-#include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
+#include "core/diagnosis/naming/monthly_vote.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "daemon/site/replay/recording.hpp"
 

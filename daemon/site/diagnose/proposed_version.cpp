@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 #include "core/diagnosis/next_version.hpp"
 #include "daemon/site/model/version_list.hpp"
 

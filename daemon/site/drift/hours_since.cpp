@@ -4,10 +4,10 @@
 #include <memory>
 #include <utility>
 
-#include "core/diagnosis/learnt_names.hpp"
-#include "core/diagnosis/signature_evidence.hpp"
-#include "core/diagnosis/signature_names.hpp"
-#include "core/diagnosis/signatures.hpp"
+#include "core/diagnosis/naming/learnt_names.hpp"
+#include "core/diagnosis/naming/signature_evidence.hpp"
+#include "core/diagnosis/naming/signature_names.hpp"
+#include "core/diagnosis/naming/signatures.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
 #include "daemon/site/model/model_effects.hpp"
 

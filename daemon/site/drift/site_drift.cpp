@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "core/calibration/problem.hpp"
+#include "core/calibration/posterior/problem.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/warning.hpp"
-#include "core/metering/lost_readings.hpp"
+#include "core/metering/months/lost_readings.hpp"
 #include "daemon/site/drift/hours_since.hpp"
 #include "daemon/site/drift/watched_days.hpp"
 #include "daemon/site/model/meter_rates.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/assessment/assessed_calibration.hpp"
-#include "core/diagnosis/site_problem.hpp"
-#include "core/drift/watched_days.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
+#include "core/drift/daily/watched_days.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
 
 namespace recald::daemon {

@@ -9,7 +9,7 @@
 
 #include "core/absent.hpp"
 #include "core/assessment/assessed_calibration.hpp"
-#include "core/diagnosis/day_part_parameters.hpp"
+#include "core/diagnosis/evidence/day_part_parameters.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/warning.hpp"
 #include "core/model/hourly/prepare.hpp"

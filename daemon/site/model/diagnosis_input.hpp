@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
 #include "core/display/warning.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adapters/energyplus/energyplus_engine.hpp"
-#include "adapters/energyplus/program.hpp"
+#include "adapters/energyplus/run/program.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/diagnosis/evidence/monthly_effect.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
 #include "core/diagnosis/model_version.hpp"
-#include "core/diagnosis/monthly_effect.hpp"
-#include "core/diagnosis/site_problem.hpp"
 #include "core/model/parameter_library.hpp"
 #include "core/result.hpp"
 

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 
 namespace recald::daemon {

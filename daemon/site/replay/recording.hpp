@@ -9,9 +9,9 @@
 
 #include "adapters/csv/readings_csv.hpp"
 #include "adapters/ports/clock.hpp"
-#include "core/metering/data_quality.hpp"
-#include "core/metering/level_change.hpp"
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/data_quality.hpp"
+#include "core/metering/months/level_change.hpp"
+#include "core/metering/months/month_closer.hpp"
 #include "core/profile/electricity_profile.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"

@@ -11,7 +11,7 @@
 #include "adapters/ports/job_result.hpp"
 
 #include "core/metering/civil_time.hpp"
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/month_closer.hpp"
 #include "core/result.hpp"
 #include "core/weather/assumed_sky.hpp"
 #include "core/weather/weather_series.hpp"

@@ -10,7 +10,7 @@
 #include "adapters/stores/open.hpp"
 #include "adapters/system/sha256.hpp"
 #include "core/absent.hpp"
-#include "core/metering/closing_rules.hpp"
+#include "core/metering/months/closing_rules.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/diagnosis/diagnose.hpp"
-#include "core/diagnosis/monthly_vote.hpp"
+#include "core/diagnosis/naming/monthly_vote.hpp"
 #include "daemon/site/model/run_facts.hpp"
 
 namespace recald::daemon {

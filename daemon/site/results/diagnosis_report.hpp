@@ -6,7 +6,7 @@
 
 #include "adapters/report/diagnosis_data.hpp"
 #include "core/diagnosis/diagnose.hpp"
-#include "core/diagnosis/monthly_vote.hpp"
+#include "core/diagnosis/naming/monthly_vote.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "daemon/site/model/run_facts.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/prose.hpp"
 #include "core/display/unit.hpp"

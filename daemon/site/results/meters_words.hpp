@@ -7,7 +7,7 @@
 
 #include "adapters/report/meters_page.hpp"
 #include "core/assessment/output_assessment.hpp"
-#include "core/metering/level_change.hpp"
+#include "core/metering/months/level_change.hpp"
 
 namespace recald::daemon {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/assessment/model_errors.hpp"
-#include "core/calibration/draws.hpp"
+#include "core/calibration/posterior/draws.hpp"
 #include "core/random/rng.hpp"
 #include "core/random/streams.hpp"
 #include "core/savings/drawn_errors.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/month_closer.hpp"
 #include "core/metering/reading.hpp"
 #include "core/result.hpp"
 #include "core/weather/weather_series.hpp"

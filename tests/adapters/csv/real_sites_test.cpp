@@ -11,8 +11,8 @@
 
 #include "adapters/csv/readings_csv.hpp"
 #include "adapters/csv/weather_csv.hpp"
-#include "core/metering/level_change.hpp"
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/level_change.hpp"
+#include "core/metering/months/month_closer.hpp"
 #include "tests/support/data_folders.hpp"
 
 namespace recald::real_sites_test {

@@ -1,4 +1,4 @@
-#include "adapters/energyplus/component_sizes.hpp"
+#include "adapters/energyplus/model/component_sizes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::energyplus::contents_test {

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "adapters/energyplus/schedule_values.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "adapters/energyplus/model/schedule_values.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 
 namespace recald::energyplus {
 namespace {

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "adapters/energyplus/component_sizes.hpp"
 #include "adapters/energyplus/effect_patch.hpp"
+#include "adapters/energyplus/model/component_sizes.hpp"
 #include "adapters/energyplus/read_model.hpp"
 #include "adapters/energyplus/trial.hpp"
 #include "adapters/epw/epw_writer.hpp"

@@ -1,4 +1,4 @@
-#include "adapters/energyplus/error_file.hpp"
+#include "adapters/energyplus/run/error_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "adapters/energyplus/role_schedules.hpp"
+#include "adapters/energyplus/model/role_schedules.hpp"
 
 namespace recald::energyplus::known_parameters_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "adapters/energyplus/model_document.hpp"
+#include "adapters/energyplus/model/model_document.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

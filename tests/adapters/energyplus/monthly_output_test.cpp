@@ -1,4 +1,4 @@
-#include "adapters/energyplus/monthly_output.hpp"
+#include "adapters/energyplus/run/monthly_output.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "adapters/energyplus/schedule_values.hpp"
+#include "adapters/energyplus/model/schedule_values.hpp"
 
 #include <gtest/gtest.h>
 

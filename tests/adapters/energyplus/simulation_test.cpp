@@ -1,5 +1,5 @@
 /// Runs of programs that stand for EnergyPlus at its worst, and of EnergyPlus itself where it is.
-#include "adapters/energyplus/simulation.hpp"
+#include "adapters/energyplus/run/simulation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "adapters/energyplus/meter_output.hpp"
+#include "adapters/energyplus/run/meter_output.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::energyplus::simulation_test {

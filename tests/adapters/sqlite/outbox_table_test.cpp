@@ -3,7 +3,7 @@
 
 #include "adapters/ports/destination_cursors.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
-#include "adapters/sqlite/tables.hpp"
+#include "adapters/sqlite/tables/tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::sqlite::outbox_table_test {

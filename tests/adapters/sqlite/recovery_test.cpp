@@ -1,12 +1,12 @@
 /// Damaged stores: put aside, and all that can be read is in the new one.
-#include "adapters/sqlite/recovery.hpp"
+#include "adapters/sqlite/recovery/recovery.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "adapters/ports/destination_cursors.hpp"
-#include "adapters/sqlite/schema.hpp"
-#include "adapters/sqlite/tables.hpp"
+#include "adapters/sqlite/tables/schema.hpp"
+#include "adapters/sqlite/tables/tables.hpp"
 #include "core/random/rng.hpp"
 #include "tests/support/damage.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "adapters/sqlite/register_json.hpp"
-#include "adapters/sqlite/schema.hpp"
+#include "adapters/sqlite/tables/register_json.hpp"
+#include "adapters/sqlite/tables/schema.hpp"
 #include "tests/support/damage.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <thread>
 
-#include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
-#include "adapters/sqlite/tables.hpp"
+#include "adapters/sqlite/tables/schema.hpp"
+#include "adapters/sqlite/tables/tables.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace recald::sqlite::store_tables_test {

@@ -10,8 +10,8 @@
 
 #include "core/metering/civil_time.hpp"
 #include "core/result.hpp"
-#include "simulators/energyplus/building_parts.hpp"
-#include "simulators/energyplus/schedule_year.hpp"
+#include "simulators/energyplus/parts/building_parts.hpp"
+#include "simulators/energyplus/parts/schedule_year.hpp"
 
 namespace recald::blind {
 

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "core/calibration/posterior.hpp"
-#include "core/calibration/seed_rwm.hpp"
+#include "core/calibration/posterior/posterior.hpp"
+#include "core/calibration/samplers/seed_rwm.hpp"
 #include "tests/core/calibration/small_case.hpp"
 #include "tests/core/calibration/toy_models.hpp"
 #include "tests/support/allocations.hpp"

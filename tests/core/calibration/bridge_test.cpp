@@ -1,4 +1,4 @@
-#include "core/calibration/bridge.hpp"
+#include "core/calibration/checks/bridge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/calibration/nuts.hpp"
-#include "core/calibration/smc.hpp"
+#include "core/calibration/samplers/nuts.hpp"
+#include "core/calibration/samplers/smc.hpp"
 #include "tests/core/calibration/chain_checks.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration/diagnostics.hpp"
-#include "core/calibration/sampler.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
+#include "core/calibration/samplers/sampler.hpp"
 #include "core/statistics/quantile.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 

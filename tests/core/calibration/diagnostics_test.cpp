@@ -1,4 +1,4 @@
-#include "core/calibration/diagnostics.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/calibration/discrepancy.hpp"
+#include "core/calibration/covariance/discrepancy.hpp"
 
 #include <gtest/gtest.h>
 

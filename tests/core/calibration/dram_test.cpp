@@ -1,10 +1,10 @@
-#include "core/calibration/dram.hpp"
+#include "core/calibration/samplers/dram.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "core/calibration/diagnostics.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
 #include "tests/core/calibration/chain_checks.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/calibration/emulator.hpp"
+#include "core/calibration/posterior/emulator.hpp"
 
 #include <gmock/gmock.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/calibration/cholesky.hpp"
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/covariance/cholesky.hpp"
+#include "core/calibration/posterior/posterior.hpp"
 
 namespace recald::calibration::gradient_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/calibration/hyper_prior.hpp"
+#include "core/calibration/covariance/hyper_prior.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

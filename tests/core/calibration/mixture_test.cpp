@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/calibration/diagnostics.hpp"
 #include "core/calibration/gaussian_mixture.hpp"
 #include "core/calibration/mode_jumps.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
 
 namespace recald::calibration {
 namespace {

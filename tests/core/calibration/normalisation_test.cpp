@@ -1,4 +1,4 @@
-#include "core/calibration/normalisation.hpp"
+#include "core/calibration/posterior/normalisation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

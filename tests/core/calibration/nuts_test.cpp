@@ -1,4 +1,4 @@
-#include "core/calibration/nuts.hpp"
+#include "core/calibration/samplers/nuts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@
 #include <limits>
 #include <numbers>
 
-#include "core/calibration/diagnostics.hpp"
-#include "core/calibration/hamiltonian.hpp"
-#include "core/calibration/step_size.hpp"
-#include "core/calibration/trajectory.hpp"
-#include "core/calibration/warm_up.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
+#include "core/calibration/samplers/hamiltonian.hpp"
+#include "core/calibration/samplers/step_size.hpp"
+#include "core/calibration/samplers/trajectory.hpp"
+#include "core/calibration/samplers/warm_up.hpp"
 #include "tests/core/calibration/chain_checks.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 

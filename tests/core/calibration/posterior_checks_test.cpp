@@ -7,9 +7,9 @@
 #include <functional>
 #include <limits>
 
-#include "core/calibration/leave_out.hpp"
+#include "core/calibration/checks/leave_out.hpp"
+#include "core/calibration/checks/weak_directions.hpp"
 #include "core/calibration/predictive.hpp"
-#include "core/calibration/weak_directions.hpp"
 #include "tests/core/calibration/toy_models.hpp"
 
 namespace recald::calibration::posterior_checks_test {

@@ -1,4 +1,4 @@
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/posterior/posterior.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

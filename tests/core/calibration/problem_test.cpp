@@ -1,4 +1,4 @@
-#include "core/calibration/problem.hpp"
+#include "core/calibration/posterior/problem.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/calibration/psis.hpp"
+#include "core/calibration/checks/psis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,10 +4,10 @@
 
 #include <functional>
 
-#include "core/calibration/dram.hpp"
-#include "core/calibration/nuts.hpp"
-#include "core/calibration/particles.hpp"
-#include "core/calibration/seed_rwm.hpp"
+#include "core/calibration/samplers/dram.hpp"
+#include "core/calibration/samplers/nuts.hpp"
+#include "core/calibration/samplers/particles.hpp"
+#include "core/calibration/samplers/seed_rwm.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 #include "tests/support/allocations.hpp"
 

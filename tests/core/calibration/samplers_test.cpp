@@ -1,4 +1,4 @@
-#include "core/calibration/samplers.hpp"
+#include "core/calibration/samplers/samplers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "core/calibration/diagnostics.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
 #include "tests/core/calibration/chain_checks.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 

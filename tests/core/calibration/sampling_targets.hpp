@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "core/calibration/log_sum.hpp"
-#include "core/calibration/sampler.hpp"
+#include "core/calibration/samplers/log_sum.hpp"
+#include "core/calibration/samplers/sampler.hpp"
 
 namespace recald::calibration {
 

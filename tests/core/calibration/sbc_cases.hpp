@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/assessment/model_errors.hpp"
-#include "core/calibration/emulator.hpp"
+#include "core/calibration/posterior/emulator.hpp"
 #include "core/design/latin_hypercube.hpp"
 #include "core/design/model_runs.hpp"
 #include "core/model/epc/epc_model.hpp"

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration/normalisation.hpp"
-#include "core/calibration/posterior.hpp"
-#include "core/calibration/problem.hpp"
+#include "core/calibration/posterior/normalisation.hpp"
+#include "core/calibration/posterior/posterior.hpp"
+#include "core/calibration/posterior/problem.hpp"
 #include "core/model/metamodel/builders.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter.hpp"

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "core/calibration/diagnostics.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
 #include "core/calibration/sampling.hpp"
 #include "core/statistics/quantile.hpp"
 

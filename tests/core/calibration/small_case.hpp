@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "core/calibration/posterior.hpp"
+#include "core/calibration/posterior/posterior.hpp"
 
 namespace recald::calibration {
 

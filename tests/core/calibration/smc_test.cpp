@@ -1,4 +1,4 @@
-#include "core/calibration/smc.hpp"
+#include "core/calibration/samplers/smc.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/calibration/diagnostics.hpp"
-#include "core/calibration/particles.hpp"
+#include "core/calibration/posterior/diagnostics.hpp"
+#include "core/calibration/samplers/particles.hpp"
 #include "tests/core/calibration/chain_checks.hpp"
 #include "tests/core/calibration/sampling_targets.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/calibration/summary.hpp"
+#include "core/calibration/posterior/summary.hpp"
 #include "core/statistics/quantile.hpp"
 
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/calibration/draws.hpp"
+#include "core/calibration/posterior/draws.hpp"
 #include "core/calibration/posterior_findings.hpp"
 
 namespace recald::calibration::summary_test {

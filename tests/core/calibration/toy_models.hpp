@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/calibration/problem.hpp"
+#include "core/calibration/posterior/problem.hpp"
 #include "core/model/monthly_model.hpp"
 
 namespace recald::calibration {

@@ -1,4 +1,4 @@
-#include "core/diagnosis/block_noise.hpp"
+#include "core/diagnosis/evidence/block_noise.hpp"
 
 #include <gtest/gtest.h>
 

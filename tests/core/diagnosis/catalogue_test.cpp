@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <set>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 #include "core/model/hourly/hourly.hpp"
 #include "tests/support/sample_building.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/diagnosis/day_parts.hpp"
+#include "core/diagnosis/evidence/day_parts.hpp"
 
 #include <gtest/gtest.h>
 

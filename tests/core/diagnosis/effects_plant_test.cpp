@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 #include "core/model/hourly/hourly.hpp"
 #include "core/weather/psychrometrics.hpp"
 #include "tests/support/sample_building.hpp"

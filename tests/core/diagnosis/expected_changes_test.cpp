@@ -1,4 +1,4 @@
-#include "core/diagnosis/expected_changes.hpp"
+#include "core/diagnosis/naming/expected_changes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/diagnosis/false_discovery.hpp"
+#include "core/diagnosis/evidence/false_discovery.hpp"
 
 #include <gtest/gtest.h>
 

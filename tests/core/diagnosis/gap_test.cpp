@@ -1,4 +1,4 @@
-#include "core/diagnosis/gap.hpp"
+#include "core/diagnosis/check/gap.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "core/diagnosis/joint_fit.hpp"
+#include "core/diagnosis/evidence/joint_fit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/diagnosis/check/ground.hpp"
 #include "core/diagnosis/diagnose.hpp"
-#include "core/diagnosis/ground.hpp"
 #include "tests/support/sample_problem.hpp"
 
 namespace recald::diagnosis::joint_fit_test {

@@ -1,4 +1,4 @@
-#include "core/diagnosis/monthly_effect.hpp"
+#include "core/diagnosis/evidence/monthly_effect.hpp"
 
 #include <gtest/gtest.h>
 

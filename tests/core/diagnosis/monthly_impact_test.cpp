@@ -1,4 +1,4 @@
-#include "core/diagnosis/monthly_impact.hpp"
+#include "core/diagnosis/evidence/monthly_impact.hpp"
 
 #include <gtest/gtest.h>
 

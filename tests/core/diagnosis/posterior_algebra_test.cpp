@@ -1,4 +1,4 @@
-#include "core/diagnosis/posterior_algebra.hpp"
+#include "core/diagnosis/evidence/posterior_algebra.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "core/diagnosis/false_discovery.hpp"
+#include "core/diagnosis/evidence/false_discovery.hpp"
 #include "core/random/rng.hpp"
 
 namespace recald::diagnosis::posterior_algebra_test {

@@ -1,4 +1,4 @@
-#include "core/diagnosis/residual_map.hpp"
+#include "core/diagnosis/evidence/residual_map.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/diagnosis/signature_evidence.hpp"
+#include "core/diagnosis/naming/signature_evidence.hpp"
 
 #include <gtest/gtest.h>
 

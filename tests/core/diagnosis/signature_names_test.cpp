@@ -1,10 +1,10 @@
-#include "core/diagnosis/signature_names.hpp"
+#include "core/diagnosis/naming/signature_names.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/diagnosis/learnt_names.hpp"
+#include "core/diagnosis/naming/learnt_names.hpp"
 
 namespace recald::diagnosis::signature_names_test {
 namespace {

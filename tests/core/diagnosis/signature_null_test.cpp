@@ -1,4 +1,4 @@
-#include "core/diagnosis/signature_null.hpp"
+#include "core/diagnosis/naming/signature_null.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/diagnosis/signatures.hpp"
+#include "core/diagnosis/naming/signatures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/diagnosis/public_holidays.hpp"
+#include "core/diagnosis/effects/support/public_holidays.hpp"
 #include "tests/support/sample_building.hpp"
 
 namespace recald::diagnosis::signatures_test {

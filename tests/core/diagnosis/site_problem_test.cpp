@@ -1,4 +1,4 @@
-#include "core/diagnosis/site_problem.hpp"
+#include "core/diagnosis/evidence/site_problem.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "core/diagnosis/usual_errors.hpp"
+#include "core/diagnosis/check/usual_errors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/diagnosis/candidate_shapes.hpp"
-#include "core/diagnosis/ground.hpp"
+#include "core/diagnosis/check/ground.hpp"
+#include "core/diagnosis/evidence/candidate_shapes.hpp"
 #include "tests/support/sample_problem.hpp"
 
 namespace recald::diagnosis::usual_errors_test {

@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
-#include "core/calibration/log_sum.hpp"
-#include "core/calibration/smc.hpp"
+#include "core/calibration/samplers/log_sum.hpp"
+#include "core/calibration/samplers/smc.hpp"
 #include "core/drift/calibration_check.hpp"
 #include "tests/core/calibration/small_case.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/metering/close_month.hpp"
+#include "core/metering/months/close_month.hpp"
 
 #include <gtest/gtest.h>
 

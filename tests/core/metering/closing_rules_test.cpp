@@ -1,4 +1,4 @@
-#include "core/metering/closing_rules.hpp"
+#include "core/metering/months/closing_rules.hpp"
 
 #include <gtest/gtest.h>
 

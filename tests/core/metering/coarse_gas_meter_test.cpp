@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "core/metering/validation.hpp"
+#include "core/metering/months/validation.hpp"
 #include "month_builder.hpp"
 
 namespace recald::metering::coarse_gas_meter_test {

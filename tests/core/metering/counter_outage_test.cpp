@@ -6,9 +6,9 @@
 #include <numbers>
 #include <ostream>
 
-#include "core/metering/close_month.hpp"
-#include "core/metering/interval_book.hpp"
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/close_month.hpp"
+#include "core/metering/months/month_closer.hpp"
+#include "core/metering/registers/interval_book.hpp"
 #include "month_builder.hpp"
 
 namespace recald::metering::counter_outage_test {

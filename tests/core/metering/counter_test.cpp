@@ -1,4 +1,4 @@
-#include "core/metering/counter.hpp"
+#include "core/metering/registers/counter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/metering/data_quality.hpp"
+#include "core/metering/months/data_quality.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

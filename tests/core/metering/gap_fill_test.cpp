@@ -1,4 +1,4 @@
-#include "core/metering/gap_fill.hpp"
+#include "core/metering/months/gap_fill.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/metering/interval_book.hpp"
+#include "core/metering/registers/interval_book.hpp"
 
 #include <gtest/gtest.h>
 

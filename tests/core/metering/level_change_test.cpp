@@ -1,4 +1,4 @@
-#include "core/metering/level_change.hpp"
+#include "core/metering/months/level_change.hpp"
 
 #include <gtest/gtest.h>
 

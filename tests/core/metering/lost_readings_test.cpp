@@ -1,4 +1,4 @@
-#include "core/metering/lost_readings.hpp"
+#include "core/metering/months/lost_readings.hpp"
 
 #include <gmock/gmock.h>
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/metering/month_slots.hpp"
+#include "core/metering/months/month_slots.hpp"
 
 namespace recald::metering::testing {
 

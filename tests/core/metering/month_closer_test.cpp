@@ -1,4 +1,4 @@
-#include "core/metering/month_closer.hpp"
+#include "core/metering/months/month_closer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/metering/month_slots.hpp"
+#include "core/metering/months/month_slots.hpp"
 
 #include <gtest/gtest.h>
 

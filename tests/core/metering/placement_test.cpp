@@ -1,4 +1,4 @@
-#include "core/metering/placement.hpp"
+#include "core/metering/registers/placement.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// A power that is sampled, as intervals.
-#include "core/metering/power_book.hpp"
+#include "core/metering/registers/power_book.hpp"
 
 #include <gmock/gmock.h>
 

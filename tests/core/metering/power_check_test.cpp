@@ -1,5 +1,5 @@
 /// A counter held against a power.
-#include "core/metering/power_check.hpp"
+#include "core/metering/registers/power_check.hpp"
 
 #include <gmock/gmock.h>
 

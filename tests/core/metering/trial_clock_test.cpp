@@ -1,4 +1,4 @@
-#include "core/metering/trial_clock.hpp"
+#include "core/metering/registers/trial_clock.hpp"
 
 #include <gtest/gtest.h>
 

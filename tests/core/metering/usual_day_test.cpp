@@ -1,4 +1,4 @@
-#include "core/metering/usual_day.hpp"
+#include "core/metering/months/usual_day.hpp"
 
 #include <gtest/gtest.h>
 

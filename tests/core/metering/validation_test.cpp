@@ -1,4 +1,4 @@
-#include "core/metering/validation.hpp"
+#include "core/metering/months/validation.hpp"
 
 #include <gtest/gtest.h>
 

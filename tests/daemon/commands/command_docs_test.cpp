@@ -8,8 +8,8 @@
 #include <memory>
 #include <sstream>
 
-#include "daemon/commands/command_pages.hpp"
 #include "daemon/commands/console.hpp"
+#include "daemon/commands/line/command_pages.hpp"
 #include "daemon/version.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/support/temporary_folder.hpp"

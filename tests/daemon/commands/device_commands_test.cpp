@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/system/file_holders.hpp"
-#include "daemon/commands/scan_bus.hpp"
+#include "daemon/commands/meters/scan_bus.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/support/register_device.hpp"
 #include "tests/support/sample_site.hpp"

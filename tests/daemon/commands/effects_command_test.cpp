@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 #include "tests/daemon/command_line.hpp"
 
 namespace recald::daemon::effects_command_test {

@@ -1,5 +1,5 @@
 /// What people get wrong in register maps, recognised by the values.
-#include "daemon/commands/register_doubts.hpp"
+#include "daemon/commands/meters/register_doubts.hpp"
 
 #include <gmock/gmock.h>
 

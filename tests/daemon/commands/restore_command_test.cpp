@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/ports/destination_cursors.hpp"
-#include "adapters/sqlite/schema.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
+#include "adapters/sqlite/tables/schema.hpp"
 #include "adapters/system/file_lock.hpp"
 #include "daemon/gateway/upkeep/open_store.hpp"
 #include "daemon/site/config/site_config.hpp"

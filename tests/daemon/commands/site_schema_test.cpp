@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/commands/site_schema.hpp"
+#include "daemon/commands/line/site_schema.hpp"
 #include "tests/support/sample_site.hpp"
 
 namespace recald::daemon::site_schema_test {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/gateway/serve/served.hpp"
+#include "daemon/gateway/serve/api/served.hpp"
 #include "tests/adapters/http/raw_client.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/daemon/gateway/serve/served_site.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 #include "core/model/hourly/alteration.hpp"
 
 namespace recald::diagnosis::effects {

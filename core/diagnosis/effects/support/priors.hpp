@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/absent.hpp"
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 
 namespace recald::diagnosis::effects {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "adapters/sqlite/register_json.hpp"
+#include "adapters/sqlite/tables/register_json.hpp"
 #include "daemon/site/config/register_map_file.hpp"
 #include "tests/daemon/gateway/weather_station.hpp"
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <set>
 
-#include "core/diagnosis/effect.hpp"
+#include "core/diagnosis/effects/support/effect.hpp"
 #include "daemon/gateway/registers/register_page.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/http/client.hpp"
-#include "adapters/sqlite/database.hpp"
+#include "adapters/sqlite/tables/database.hpp"
 #include "adapters/stores/open.hpp"
 #include "tests/daemon/gateway/run/polled_site.hpp"
 #include "tests/support/background_process.hpp"

@@ -1,5 +1,5 @@
 /// The API over a gateway that runs: what is asked and what comes.
-#include "daemon/gateway/serve/api.hpp"
+#include "daemon/gateway/serve/api/api.hpp"
 
 #include <gmock/gmock.h>
 

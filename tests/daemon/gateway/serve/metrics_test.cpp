@@ -1,8 +1,8 @@
-#include "daemon/gateway/serve/metrics.hpp"
+#include "daemon/gateway/serve/api/metrics.hpp"
 
 #include <gmock/gmock.h>
 
-#include "daemon/gateway/serve/prometheus_text.hpp"
+#include "daemon/gateway/serve/api/prometheus_text.hpp"
 #include "tests/daemon/gateway/serve/prometheus_parser.hpp"
 #include "tests/daemon/gateway/serve/served_site.hpp"
 

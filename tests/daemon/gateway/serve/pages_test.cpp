@@ -1,4 +1,4 @@
-#include "daemon/gateway/serve/pages.hpp"
+#include "daemon/gateway/serve/pages/pages.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,8 +8,8 @@
 #include "adapters/http/dress.hpp"
 #include "adapters/models/model_store.hpp"
 #include "adapters/system/write_file.hpp"
-#include "daemon/gateway/serve/page_frame.hpp"
-#include "daemon/gateway/serve/readiness.hpp"
+#include "daemon/gateway/serve/api/readiness.hpp"
+#include "daemon/gateway/serve/pages/page_frame.hpp"
 #include "tests/daemon/gateway/serve/served_site.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 /// Pushed readings.
-#include "daemon/gateway/serve/pushed_readings.hpp"
+#include "daemon/gateway/serve/api/pushed_readings.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

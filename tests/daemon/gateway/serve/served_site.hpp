@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "daemon/gateway/serve/served.hpp"
+#include "daemon/gateway/serve/api/served.hpp"
 #include "tests/daemon/gateway/gateway_rig.hpp"
 
 namespace recald::daemon {

@@ -1,8 +1,8 @@
-#include "daemon/site/config/alert_config.hpp"
+#include "daemon/site/config/service/alert_config.hpp"
 
 #include <gmock/gmock.h>
 
-#include "daemon/site/config/alert_kinds.hpp"
+#include "daemon/site/config/service/alert_kinds.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon::alert_config_test {

@@ -1,5 +1,5 @@
 /// The brokers of a site file: [mqtt] and [fleet] are read alike.
-#include "daemon/site/config/broker_config.hpp"
+#include "daemon/site/config/service/broker_config.hpp"
 
 #include <gmock/gmock.h>
 

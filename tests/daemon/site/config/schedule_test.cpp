@@ -1,4 +1,4 @@
-#include "daemon/site/config/schedule.hpp"
+#include "daemon/site/config/service/schedule.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 /// [http], [modbus] and [recalibration] of a site file.
-#include "daemon/site/config/service_config.hpp"
+#include "daemon/site/config/service/service_config.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/site/config/store_config.hpp"
+#include "daemon/site/config/service/store_config.hpp"
 
 #include <gmock/gmock.h>
 
