@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 
 namespace recald::csv {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "adapters/doe/table_reader.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "core/absent.hpp"
 
 namespace recald::doe {

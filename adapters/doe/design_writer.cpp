@@ -12,7 +12,7 @@
 #include "adapters/doe/failed_runs_file.hpp"
 #include "adapters/doe/priors_file.hpp"
 #include "adapters/doe/table_reader.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "core/absent.hpp"
 
 namespace recald::doe {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "adapters/doe/table_reader.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 namespace recald::doe {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "adapters/energyplus/known_parameters.hpp"
 #include "adapters/energyplus/run/meter_output.hpp"
-#include "adapters/system/sha256.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/sha256.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "core/absent.hpp"
 #include "core/weather/daily_inputs.hpp"
 

@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "adapters/system/child_process.hpp"
-#include "adapters/system/regular_file.hpp"
-#include "adapters/system/scratch_folder.hpp"
+#include "adapters/system/files/regular_file.hpp"
+#include "adapters/system/files/scratch_folder.hpp"
 #include "core/text/ascii.hpp"
 
 namespace recald::energyplus {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "adapters/energyplus/run/meter_output.hpp"
-#include "adapters/system/sha256.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/sha256.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 namespace recald::energyplus {
 namespace {

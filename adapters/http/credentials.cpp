@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "adapters/http/ascii.hpp"
-#include "adapters/system/regular_file.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/regular_file.hpp"
+#include "adapters/system/files/sha256.hpp"
 
 namespace recald::http {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "adapters/http/ascii.hpp"
 #include "adapters/http/gzip.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 
 namespace recald::http {
 namespace {

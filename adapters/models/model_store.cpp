@@ -10,7 +10,7 @@
 
 #include "adapters/models/version_file.hpp"
 #include "adapters/models/versions_folder.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 namespace recald::models {
 namespace {

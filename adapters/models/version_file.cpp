@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "adapters/shapes/strict_json.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 
 SHAPE(recald::diagnosis::EffectParameterRecord, name, unit, prior, mean, sd, q05, q50, q95, draws);
 SHAPE(recald::diagnosis::MeterImpact, meter, monthly_kWh);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "adapters/record/values.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 
 namespace recald::record {
 namespace {

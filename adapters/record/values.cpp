@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 
 namespace recald::record {
 

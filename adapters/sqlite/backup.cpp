@@ -5,8 +5,8 @@
 
 #include "adapters/sqlite/damage.hpp"
 #include "adapters/sqlite/tables/handles.hpp"
-#include "adapters/system/durable_names.hpp"
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/durable_names.hpp"
+#include "adapters/system/files/regular_file.hpp"
 
 namespace recald::sqlite {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <zip.h>
 
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 
 namespace recald::table {
 

@@ -107,6 +107,14 @@ struct ModelVersion {
   return base;
 }
 
+/// Whether the effect may learn from the month: the month comes after all that it was learnt from.
+[[nodiscard]] bool may_learn_from(const AddedEffect& effect, metering::Month month);
+
+/// The name of an effect's parameter among those of a design or a calibration:
+/// "night_setback_missing_share"; with its meter if it has one, "meter_scale_heat_factor".
+[[nodiscard]] std::string effect_parameter_name(const AddedEffect& effect,
+                                                const EffectParameterRecord& parameter);
+
 /// The first twelve digits of a version, for people to read and type.
 [[nodiscard]] inline std::string short_version(std::string_view version) {
   return std::string{version.substr(0, 12)};

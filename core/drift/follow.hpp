@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "core/calibration/calibration.hpp"
-#include "core/drift/daily/daily_watches.hpp"
 #include "core/drift/followed_data.hpp"
 #include "core/drift/inquiries.hpp"
 #include "core/drift/sequential.hpp"
 #include "core/drift/site_drift.hpp"
-#include "core/drift/watch.hpp"
+#include "core/drift/watch/daily_watches.hpp"
+#include "core/drift/watch/watch.hpp"
 #include "core/result.hpp"
 
 namespace recald::drift {

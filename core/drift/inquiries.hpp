@@ -8,10 +8,10 @@
 
 #include "core/calibration/covariance/hyper_prior.hpp"
 #include "core/drift/cause.hpp"
-#include "core/drift/daily/daily_watches.hpp"
 #include "core/drift/named_change.hpp"
 #include "core/drift/prequential.hpp"
 #include "core/drift/site_drift.hpp"
+#include "core/drift/watch/daily_watches.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/result.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/drift/cause.hpp"
-#include "core/drift/watch.hpp"
+#include "core/drift/watch/watch.hpp"
 
 namespace recald::drift {
 

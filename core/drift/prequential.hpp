@@ -10,7 +10,7 @@
 #include "core/assessment/level_forecast.hpp"
 #include "core/assessment/spread.hpp"
 #include "core/drift/sequential.hpp"
-#include "core/drift/watch.hpp"
+#include "core/drift/watch/watch.hpp"
 
 namespace recald::drift {
 

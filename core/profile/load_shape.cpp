@@ -18,7 +18,7 @@ constexpr double kLeastMeasured = 0.5;  // of an hour's slots
 constexpr std::size_t kWeek_h = 7 * 24;
 constexpr double kBaseProbability = 0.05;
 
-bool is_believed(const HourlyLoad& load) {
+bool is_believed(const model::HourlyLoad& load) {
   return std::isfinite(load.mean_kW) && load.ok_share >= kLeastMeasured && !load.suspect;
 }
 
@@ -34,12 +34,12 @@ void find_base(std::vector<double> loads_kW, LoadShape& shape) {
 
 }  // namespace
 
-LoadShape load_shape(std::span<const HourlyLoad> loads, const model::Holidays& holidays) {
+LoadShape load_shape(std::span<const model::HourlyLoad> loads, const model::Holidays& holidays) {
   LoadShape shape;
   std::array<std::array<int, 24>, model::kDayTypes> counts{};
   std::array<std::set<metering::Day>, model::kDayTypes> days;
   std::vector<double> loads_kW;
-  for (const HourlyLoad& load : loads) {
+  for (const model::HourlyLoad& load : loads) {
     if (!is_believed(load)) continue;
     const DayType type = model::day_type(load.date, holidays);
     const auto kind = static_cast<std::size_t>(type);

@@ -4,8 +4,8 @@
 #include <array>
 #include <span>
 
+#include "core/model/electricity_profile.hpp"
 #include "core/model/schedule.hpp"
-#include "core/profile/electricity_profile.hpp"
 
 namespace recald::profile {
 
@@ -17,7 +17,7 @@ struct LoadShape {
 };
 
 /// Hours that are not half measured, or suspect, do not count.
-[[nodiscard]] LoadShape load_shape(std::span<const HourlyLoad> loads,
+[[nodiscard]] LoadShape load_shape(std::span<const model::HourlyLoad> loads,
                                    const model::Holidays& holidays);
 
 }  // namespace recald::profile

@@ -25,14 +25,14 @@ bool Tariff::is_empty() const {
 }
 
 std::optional<double> mean_price_per_kWh(const Tariff& tariff, metering::Utility utility,
-                                         std::span<const profile::HourlyLoad> hours,
+                                         std::span<const model::HourlyLoad> hours,
                                          const model::Holidays& holidays) {
   const auto& prices = tariff.prices_of(utility);
   if (!prices) return {};
   if (prices->periods.empty()) return prices->per_kWh;
   double energy_kWh = 0.0;
   double money = 0.0;
-  for (const profile::HourlyLoad& hour : hours) {
+  for (const model::HourlyLoad& hour : hours) {
     // What flows back is no reason to pay less for what is drawn.
     if (!(hour.mean_kW > 0.0)) continue;
     energy_kWh += hour.mean_kW;
@@ -43,7 +43,7 @@ std::optional<double> mean_price_per_kWh(const Tariff& tariff, metering::Utility
 }
 
 MonthBill bill_of(const Tariff& tariff, metering::Utility utility,
-                  const metering::MonthlyFigure& figure, std::span<const profile::HourlyLoad> hours,
+                  const metering::MonthlyFigure& figure, std::span<const model::HourlyLoad> hours,
                   const model::Holidays& holidays) {
   MonthBill bill;
   const double energy_kWh = figure.daily_average_kWh * metering::days_in(figure.month);
@@ -66,7 +66,7 @@ MonthBill bill_of(const Tariff& tariff, metering::Utility utility,
 }
 
 Rates rates_of(const Tariff& tariff, metering::Utility utility,
-               std::span<const profile::HourlyLoad> hours, const model::Holidays& holidays) {
+               std::span<const model::HourlyLoad> hours, const model::Holidays& holidays) {
   Rates rates{.per_kWh = mean_price_per_kWh(tariff, utility, hours, holidays),
               .emissions_kg_per_kWh = tariff.emissions_of(utility)};
   if (const auto& prices = tariff.prices_of(utility)) rates.per_kW_month = prices->per_kW_month;

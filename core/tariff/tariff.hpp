@@ -9,8 +9,8 @@
 
 #include "core/metering/months/monthly_figure.hpp"
 #include "core/metering/reading.hpp"
+#include "core/model/electricity_profile.hpp"
 #include "core/model/schedule.hpp"
-#include "core/profile/electricity_profile.hpp"
 
 namespace recald::tariff {
 
@@ -59,14 +59,14 @@ struct MonthBill {
 ///               shared out as what was.
 [[nodiscard]] MonthBill bill_of(const Tariff& tariff, metering::Utility utility,
                                 const metering::MonthlyFigure& figure,
-                                std::span<const profile::HourlyLoad> hours,
+                                std::span<const model::HourlyLoad> hours,
                                 const model::Holidays& holidays);
 
 /// What a kWh of this meter cost on average over its months, demand apart: the price of energy that
 /// is saved as the meter uses it. Absent without prices or energy.
 [[nodiscard]] std::optional<double> mean_price_per_kWh(const Tariff& tariff,
                                                        metering::Utility utility,
-                                                       std::span<const profile::HourlyLoad> hours,
+                                                       std::span<const model::HourlyLoad> hours,
                                                        const model::Holidays& holidays);
 
 /// What a meter's use costs and emits. Absent where the tariff does not say.
@@ -77,7 +77,7 @@ struct Rates {
 };
 
 [[nodiscard]] Rates rates_of(const Tariff& tariff, metering::Utility utility,
-                             std::span<const profile::HourlyLoad> hours,
+                             std::span<const model::HourlyLoad> hours,
                              const model::Holidays& holidays);
 
 }  // namespace recald::tariff

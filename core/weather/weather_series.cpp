@@ -341,4 +341,20 @@ FilledWeather fill_gaps(const WeatherSeries& series, const LocalCalendar& calend
   return filled;
 }
 
+WeatherSeries continued(const WeatherSeries& series, Instant from, Instant known_until,
+                        Instant until) {
+  constexpr std::size_t kWeek = 7 * 24;
+  const Instant begin =
+      std::max<Instant>(series.begin, std::chrono::floor<std::chrono::hours>(from));
+  const Instant end =
+      std::min<Instant>(series.end(), std::chrono::ceil<std::chrono::hours>(known_until));
+  WeatherSeries longer{.begin = begin, .hours = {}};
+  if (end <= begin) return longer;
+  const auto first = series.hours.begin() + (begin - series.begin) / std::chrono::hours{1};
+  longer.hours.assign(first, first + (end - begin) / std::chrono::hours{1});
+  if (longer.hours.size() < kWeek) return longer;
+  while (longer.end() < until) longer.hours.push_back(longer.hours[longer.hours.size() - kWeek]);
+  return longer;
+}
+
 }  // namespace recald::weather

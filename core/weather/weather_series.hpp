@@ -105,4 +105,9 @@ struct FilledWeather {
                                       const metering::LocalCalendar& calendar,
                                       std::chrono::seconds interpolate_max = std::chrono::hours{6});
 
+/// The weather from `from` on, as it is known at `known_until`; its last seven days go on from
+/// there to `until`. Less than seven days are given back as they are.
+[[nodiscard]] WeatherSeries continued(const WeatherSeries& series, Instant from,
+                                      Instant known_until, Instant until);
+
 }  // namespace recald::weather

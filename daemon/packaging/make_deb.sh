@@ -55,6 +55,6 @@ DH_QUIET=1 BUILD=$build SYSROOT=$sysroot debian/rules binary
 deb=$out/recald_${version}_$arch.deb
 [ "$place" = "$out" ] || mv "$place/recald_${version}_$arch.deb" "$place/recald-sim_${version}_$arch.deb" "$out"
 # shellcheck disable=SC2046,SC2086  # lists of words
-python3 "$packaging/make_sbom.py" "$deb" "$sysroot/var/lib/dpkg" "$root/adapters/report/package-lock.json" \
+python3 "$packaging/make_sbom.py" "$deb" "$sysroot/var/lib/dpkg" "$root/adapters/views/package-lock.json" \
   $(dev_packages) >"${deb%.deb}.spdx.json"
 echo "$deb"

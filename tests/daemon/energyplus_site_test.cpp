@@ -12,7 +12,7 @@
 
 #include "adapters/energyplus/run/program.hpp"
 #include "adapters/system/child_process.hpp"
-#include "adapters/system/file_lock.hpp"
+#include "adapters/system/files/file_lock.hpp"
 #include "command_line.hpp"
 #include "simulators/energyplus/model_files.hpp"
 #include "simulators/energyplus/run_readings.hpp"

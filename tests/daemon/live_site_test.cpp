@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/sqlite/sqlite_store.hpp"
+#include "core/model/hourly/hourly_run.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
-#include "daemon/site/model/hourly_run.hpp"
 #include "daemon/site/model/load_expectation.hpp"
 #include "daemon/site/model/site_parts.hpp"
 #include "tests/daemon/command_line.hpp"
@@ -185,7 +185,7 @@ TEST_F(LiveSite, ItsMonthIsForecastWhileItGoesOn) {
         metering::in_hours(now - month.begin) / metering::in_hours(month.length());
     const double forecast_kW =
         elapsed * mean_kW({month.begin, now}) + (1.0 - elapsed) * meter.month->rest_kW;
-    const double scale_kW = forecast_scale_kW(forecast_kW, meter.month->mean_kW);
+    const double scale_kW = drift::forecast_scale_kW(forecast_kW, meter.month->mean_kW);
     const double error = (mean_kW(month) - forecast_kW) / scale_kW;
     EXPECT_GE(error, meter.month->error_q05);
     EXPECT_LE(error, meter.month->error_q95);
@@ -194,37 +194,6 @@ TEST_F(LiveSite, ItsMonthIsForecastWhileItGoesOn) {
     EXPECT_GT(width, 0.0);
     EXPECT_LT(width, meter.meter == "electricity" ? 0.02 : 2.0);
   }
-}
-
-// Errors of the same size both ways; with fewer nobody knows.
-TEST(HindcastBand, IsStudentsOfTheNextError) {
-  const std::vector<double> errors{-0.1, 0.1, -0.1, 0.1, -0.1, 0.1};
-  EXPECT_FALSE(band_of_errors(std::span{errors}.first(5)).has_value());
-  const auto band = band_of_errors(errors);
-  ASSERT_TRUE(band.has_value());
-  EXPECT_NEAR(band->middle, 0.0, 1e-12);
-  // t(0.95, 5) = 2.015, sd = 0.1095, sqrt(1 + 1/6) = 1.080
-  EXPECT_NEAR(band->high, 2.0150 * 0.109545 * 1.080123, 1e-4);
-  EXPECT_NEAR(band->low, -band->high, 1e-12);
-  EXPECT_NEAR(forecast_scale_kW(20.0, 20.0), 20.0, 1e-12);
-  EXPECT_NEAR(forecast_scale_kW(80.0, 20.0), 40.0, 1e-12);
-  EXPECT_NEAR(forecast_scale_kW(-1.0, 20.0), std::sqrt(4.0 * 20.0), 1e-12);
-}
-
-TEST(ContinuedWeather, TheLastWeekGoesOn) {
-  weather::WeatherSeries series;
-  series.begin = std::chrono::sys_days{std::chrono::year{2026} / 1 / 1};
-  for (int i = 0; i < 20 * 24; ++i) series.hours.push_back({.dry_bulb_C = 1.0 * i});
-  const auto day = [&](int days) { return series.begin + std::chrono::hours{24 * days}; };
-  const auto longer = continued(series, day(2), day(12), day(31));
-  EXPECT_EQ(longer.begin, day(2));
-  EXPECT_EQ(longer.end(), day(31));
-  EXPECT_EQ(longer.find(day(11))->dry_bulb_C, 24.0 * 11);
-  EXPECT_EQ(longer.find(day(12))->dry_bulb_C, 24.0 * 5) << "what came later is not known yet";
-  EXPECT_EQ(longer.find(day(19))->dry_bulb_C, 24.0 * 5);
-  EXPECT_EQ(longer.find(day(20))->dry_bulb_C, 24.0 * 6);
-  EXPECT_EQ(continued(series, day(2), day(8), day(31)).end(), day(8)) << "less than a week";
-  EXPECT_TRUE(continued(series, day(30), day(31), day(32)).hours.empty());
 }
 
 TEST_F(LiveSite, CalibratesAsASiteWithTheSameReadingsInAFile) {

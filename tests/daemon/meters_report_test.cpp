@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "daemon/site/results/meters_words.hpp"
-#include "tests/adapters/report/page_text.hpp"
+#include "adapters/views/meters/meters_words.hpp"
+#include "tests/adapters/views/page_text.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/daemon/depot_year.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -91,7 +91,7 @@ TEST_F(MetersReport, SpeaksSiOrIpByOneKey) {
   const Outcome outcome =
       run({"replay", (folder_ / "site.toml").string(), "--out", (folder_ / "ip").string()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const std::string ip = report::own_markup(read_text(folder_ / "ip" / "meters.html"));
+  const std::string ip = views::own_markup(read_text(folder_ / "ip" / "meters.html"));
   // Four digits of each number are shown.
   const double mwh = used_of(si, "District heat", "MWh");
   EXPECT_NEAR(used_of(ip, "District heat", "MMBtu"), 3.412142 * mwh, 1e-3 * 3.412142 * mwh);
@@ -168,7 +168,7 @@ std::vector<MonthlyFigure> months(int count, double first_year, double second_ye
 }
 
 TEST(CompareYears, TheLastTwelveMonthsAgainstTheSameBefore) {
-  const auto year = compare_years(months(24, 100.0, 110.0), {});
+  const auto year = views::compare_years(months(24, 100.0, 110.0), {});
   ASSERT_TRUE(year && year->change);
   EXPECT_EQ(year->first, std::chrono::year{2021} / 1);
   EXPECT_EQ(year->months, 12);
@@ -181,7 +181,7 @@ TEST(CompareYears, AMonthThatOneYearLacksCountsInNeither) {
   auto figures = months(24, 100.0, 110.0);
   figures[3].daily_average_kWh = 9000.0;
   figures[3].usable = false;
-  const auto year = compare_years(figures, {});
+  const auto year = views::compare_years(figures, {});
   ASSERT_TRUE(year && year->change);
   EXPECT_EQ(year->months, 12);
   EXPECT_EQ(year->compared, 11);
@@ -189,9 +189,9 @@ TEST(CompareYears, AMonthThatOneYearLacksCountsInNeither) {
 }
 
 TEST(CompareYears, AFewMonthsAreNoYear) {
-  EXPECT_FALSE(compare_years(months(17, 100.0, 110.0), {})->change);
-  EXPECT_TRUE(compare_years(months(18, 100.0, 110.0), {})->change);
-  EXPECT_FALSE(compare_years({figure(std::chrono::year{2020} / 1, 5.0, false)}, {}));
+  EXPECT_FALSE(views::compare_years(months(17, 100.0, 110.0), {})->change);
+  EXPECT_TRUE(views::compare_years(months(18, 100.0, 110.0), {})->change);
+  EXPECT_FALSE(views::compare_years({figure(std::chrono::year{2020} / 1, 5.0, false)}, {}));
 }
 
 TEST(CompareYears, AnotherUnitIsNoOtherUse) {
@@ -202,33 +202,33 @@ TEST(CompareYears, AnotherUnitIsNoOtherUse) {
                            .factor = 1000.0,
                            .z = 90.0,
                            .words = {}};
-  EXPECT_FALSE(compare_years(months(24, 1.0, 1000.0), {change})->change);
+  EXPECT_FALSE(views::compare_years(months(24, 1.0, 1000.0), {change})->change);
 }
 
-MeterStory story(std::string label, double kWh, std::optional<double> change) {
-  report::YearComparison year{.first = std::chrono::year{2021} / 1,
-                              .last = std::chrono::year{2021} / 12,
-                              .energy_kWh = kWh,
-                              .months = 12,
-                              .change = change,
-                              .compared = change ? 12 : 0};
+views::MeterStory story(std::string label, double kWh, std::optional<double> change) {
+  views::YearComparison year{.first = std::chrono::year{2021} / 1,
+                             .last = std::chrono::year{2021} / 12,
+                             .energy_kWh = kWh,
+                             .months = 12,
+                             .change = change,
+                             .compared = change ? 12 : 0};
   return {.label = std::move(label), .year = year, .changes = {}, .unseen = {}, .base_share = NAN};
 }
 
 TEST(MetersFirstSentence, SaysWhatMattersMost) {
-  std::vector<MeterStory> stories{story("Steam", 2e5, {}), story("Electricity", 3e5, {})};
+  std::vector<views::MeterStory> stories{story("Steam", 2e5, {}), story("Electricity", 3e5, {})};
   EXPECT_EQ(
-      first_screen_of(stories).sentence,
+      views::first_screen_of(stories).sentence,
       "Electricity: 300.0\u00a0MWh in 12 months to Dec 2021; Steam: 200.0\u00a0MWh in 12 months "
       "to Dec 2021.");
   stories[0].year->change = -0.02;
   stories[1].year->change = 0.12;
   stories[0].year->compared = stories[1].year->compared = 12;
-  EXPECT_EQ(first_screen_of(stories).sentence,
+  EXPECT_EQ(views::first_screen_of(stories).sentence,
             "Electricity used 12\u00a0% more in the 12 months to Dec 2021 than a year before. The "
             "other meter changed by less than 5\u00a0%.");
   stories[0].unseen = {.measured = 80.0, .forecast = {100.0, 95.0, 98.0, 100.0, 102.0, 105.0}};
-  EXPECT_EQ(first_screen_of(stories).sentence,
+  EXPECT_EQ(views::first_screen_of(stories).sentence,
             "Steam used 20\u00a0% less than its weather led to expect.");
   stories[1].changes = {{.kind = LevelChangeKind::level,
                          .since = std::chrono::year{2021} / 7,
@@ -237,13 +237,13 @@ TEST(MetersFirstSentence, SaysWhatMattersMost) {
                          .factor = 1.3,
                          .z = 7.0,
                          .words = {}}};
-  EXPECT_EQ(first_screen_of(stories).sentence,
+  EXPECT_EQ(views::first_screen_of(stories).sentence,
             "Electricity has changed since Jul 2021: 35\u00a0% more in that month "
             "than in the same months before.");
 }
 
 TEST(MetersFirstSentence, AChangeThatHasEndedIsNotTheFirstThing) {
-  std::vector<MeterStory> stories{story("Steam", 2e5, 0.01)};
+  std::vector<views::MeterStory> stories{story("Steam", 2e5, 0.01)};
   stories[0].changes = {{.kind = LevelChangeKind::level,
                          .since = std::chrono::year{2020} / 7,
                          .back_since = std::chrono::year{2020} / 10,
@@ -251,17 +251,18 @@ TEST(MetersFirstSentence, AChangeThatHasEndedIsNotTheFirstThing) {
                          .factor = 0.5,
                          .z = -9.0,
                          .words = {}}};
-  EXPECT_EQ(first_screen_of(stories).sentence,
+  EXPECT_EQ(views::first_screen_of(stories).sentence,
             "No meter used much more or less than a year before.");
-  EXPECT_THAT(change_words("Steam", stories[0].changes[0]),
+  EXPECT_THAT(views::change_words("Steam", stories[0].changes[0]),
               HasSubstr("50\u00a0% less in that month than in the same months before; it is as "
                         "before since Oct 2020."));
 }
 
 TEST(MetersFirstNumbers, AreThreeWithSigns) {
-  std::vector<MeterStory> stories{story("Steam", 2e5, -0.021), story("Electricity", 3e5, 0.12)};
+  std::vector<views::MeterStory> stories{story("Steam", 2e5, -0.021),
+                                         story("Electricity", 3e5, 0.12)};
   stories[1].base_share = 0.4;
-  const auto numbers = first_screen_of(stories).numbers;
+  const auto numbers = views::first_screen_of(stories).numbers;
   ASSERT_EQ(numbers.size(), 3u);
   EXPECT_EQ(numbers[0].number, "+12.0\u00a0%");
   EXPECT_EQ(numbers[1].number, "−2.1\u00a0%");

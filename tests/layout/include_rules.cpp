@@ -26,6 +26,7 @@ constexpr auto kOrder = std::to_array<std::string_view>({
     "daemon/site/savings",
     "daemon/gateway/poll",
     "daemon/gateway/ingest",
+    "daemon/gateway/feed",
     "daemon/gateway/upkeep",
     "daemon/gateway/alert",
     "daemon/gateway/serve",
@@ -79,6 +80,51 @@ std::string folder_of(const std::string& file) {
   return file.find('/') == last ? file.substr(0, file.rfind('.')) : file.substr(0, last);
 }
 
+/// A folder of core, adapters or simulators with all folders in it. The daemon's are ranked by
+/// kOrder.
+std::string room_of(const std::string& file) {
+  const std::string folder = folder_of(file);
+  if (folder.starts_with("daemon")) return folder;
+  return folder.substr(0, folder.find('/', folder.find('/') + 1));
+}
+
+/// @param place_of  What a file is taken for: its folder, or its room.
+void find_circles(const Includes& includes,
+                  const std::function<std::string(const std::string&)>& place_of,
+                  std::set<std::string>& found) {
+  std::map<std::string, std::set<std::string>> reached;
+  for (const auto& [file, included] : includes) {
+    std::set<std::string>& next = reached[place_of(file)];
+    for (const std::string& other : included) {
+      if (place_of(other) != place_of(file)) next.insert(place_of(other));
+    }
+  }
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (auto& [folder, next] : reached) {
+      std::set<std::string> further;
+      for (const std::string& one : next) {
+        if (const auto known = reached.find(one); known != reached.end()) {
+          further.insert(known->second.begin(), known->second.end());
+        }
+      }
+      const std::size_t before = next.size();
+      next.merge(further);
+      grows = grows || next.size() > before;
+    }
+  }
+  for (const auto& [folder, next] : reached) {
+    if (!next.contains(folder)) continue;
+    std::string circle;
+    for (const std::string& other : next) {
+      const auto back = reached.find(other);
+      const bool is_part = back != reached.end() && back->second.contains(folder);
+      if (is_part) circle += (circle.empty() ? "" : " ") + other;
+    }
+    found.insert(circle);
+  }
+}
+
 }  // namespace
 
 Includes read_includes(const std::string& root) {
@@ -111,39 +157,21 @@ std::vector<std::string> forbidden_arrows(const Includes& includes) {
 }
 
 std::vector<std::string> circles(const Includes& includes) {
-  std::map<std::string, std::set<std::string>> reached;
-  for (const auto& [file, included] : includes) {
-    std::set<std::string>& next = reached[folder_of(file)];
-    for (const std::string& other : included) {
-      if (folder_of(other) != folder_of(file)) next.insert(folder_of(other));
-    }
-  }
-  for (bool grows = true; grows;) {
-    grows = false;
-    for (auto& [folder, next] : reached) {
-      std::set<std::string> further;
-      for (const std::string& one : next) {
-        if (const auto known = reached.find(one); known != reached.end()) {
-          further.insert(known->second.begin(), known->second.end());
-        }
-      }
-      const std::size_t before = next.size();
-      next.merge(further);
-      grows = grows || next.size() > before;
-    }
-  }
   std::set<std::string> found;
-  for (const auto& [folder, next] : reached) {
-    if (!next.contains(folder)) continue;
-    std::string circle;
-    for (const std::string& other : next) {
-      const auto back = reached.find(other);
-      const bool is_part = back != reached.end() && back->second.contains(folder);
-      if (is_part) circle += (circle.empty() ? "" : " ") + other;
-    }
-    found.insert(circle);
-  }
+  find_circles(includes, folder_of, found);
+  find_circles(includes, room_of, found);
   return {found.begin(), found.end()};
+}
+
+std::vector<std::string> crowded(const Includes& includes) {
+  constexpr int kFiles_max = 30;
+  std::map<std::string, int> files;
+  for (const auto& [file, included] : includes) ++files[folder_of(file)];
+  std::vector<std::string> found;
+  for (const auto& [folder, count] : files) {
+    if (count > kFiles_max && !folder.ends_with("/effects")) found.push_back(folder);
+  }
+  return found;
 }
 
 }  // namespace recald::layout

@@ -19,8 +19,13 @@ using Includes = std::map<std::string, std::set<std::string>>;
 /// @return a sentence each, with both files.
 [[nodiscard]] std::vector<std::string> forbidden_arrows(const Includes& includes);
 
-/// Folders that include each other, directly or around a corner.
-/// @return the folders of one circle each, separated by blanks.
+/// Folders that include each other, directly or around a corner; rooms too, with all folders in
+/// them.
+/// @return the folders or rooms of one circle each, separated by blanks.
 [[nodiscard]] std::vector<std::string> circles(const Includes& includes);
+
+/// Folders of more files than a reader takes in: thirty, but for catalogues, which have a file an
+/// effect.
+[[nodiscard]] std::vector<std::string> crowded(const Includes& includes);
 
 }  // namespace recald::layout

@@ -27,6 +27,7 @@ TEST(IncludeRules, HoldForThisTree) {
   ASSERT_GT(includes.size(), 500u) << "the sources were not found";
   EXPECT_THAT(forbidden_arrows(includes), IsEmpty());
   EXPECT_THAT(circles(includes), IsEmpty());
+  EXPECT_THAT(crowded(includes), IsEmpty());
 }
 
 TEST(IncludeRules, ArrowsPointDownTheWingsAndTheirRooms) {
@@ -80,6 +81,21 @@ TEST(IncludeRules, CirclesAreFoundAroundACornerToo) {
                        {"core/c/z.cpp", {"core/a/x.hpp"}},
                        {"core/d/w.cpp", {"core/a/x.hpp", "core/d/v.hpp"}}}),
               ElementsAre("core/a core/b core/c"));
+}
+
+TEST(IncludeRules, CirclesOfRoomsAreFoundWhereTheirFoldersHaveNone) {
+  const Includes of_rooms{{"core/a/deep/x.cpp", {"core/b/y.hpp"}},
+                          {"core/b/y.hpp", {"core/a/z.hpp"}}};
+  EXPECT_THAT(circles(of_rooms), ElementsAre("core/a core/b"));
+}
+
+TEST(IncludeRules, AFolderOfMoreThanThirtyFilesIsCrowded) {
+  Includes many;
+  for (int i = 0; i < 31; ++i) {
+    many["core/a/" + std::to_string(i) + ".cpp"];
+    many["core/b/effects/" + std::to_string(i) + ".cpp"];
+  }
+  EXPECT_THAT(crowded(many), ElementsAre("core/a"));
 }
 
 /// Where what begins at `at` ends, if it is a comment, a text or a character; `at` if it is none.

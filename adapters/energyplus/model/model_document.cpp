@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 #include "core/text/ascii.hpp"
 #include "core/text/nearest.hpp"
 

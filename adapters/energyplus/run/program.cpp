@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "adapters/system/child_process.hpp"
-#include "adapters/system/scratch_folder.hpp"
+#include "adapters/system/files/scratch_folder.hpp"
 
 namespace recald::energyplus {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "adapters/energyplus/run/error_file.hpp"
 #include "adapters/system/child_process.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 namespace recald::energyplus {
 namespace {

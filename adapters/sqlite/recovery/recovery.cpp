@@ -13,8 +13,8 @@
 #include "adapters/sqlite/store_files.hpp"
 #include "adapters/sqlite/tables/outbox_table.hpp"
 #include "adapters/sqlite/tables/schema.hpp"
-#include "adapters/system/durable_names.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/durable_names.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 namespace recald::sqlite {
 namespace {

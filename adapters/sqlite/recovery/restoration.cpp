@@ -12,9 +12,9 @@
 #include "adapters/sqlite/summary.hpp"
 #include "adapters/sqlite/tables/outbox_table.hpp"
 #include "adapters/sqlite/tables/schema.hpp"
-#include "adapters/system/durable_names.hpp"
-#include "adapters/system/file_rights.hpp"
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/durable_names.hpp"
+#include "adapters/system/files/file_rights.hpp"
+#include "adapters/system/files/regular_file.hpp"
 
 namespace recald::sqlite {
 namespace {

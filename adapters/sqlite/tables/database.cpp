@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "adapters/sqlite/tables/handles.hpp"
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 #include "core/absent.hpp"
 
 namespace recald::sqlite {

@@ -27,14 +27,14 @@ HourlySchedule spread_fans_and_pumps(const Building& building, const Drivers& dr
 
 }  // namespace
 
-Result<profile::ElectricityProfile> fit_profile_with_fans(
-    std::span<const profile::HourlyLoad> loads, const Building& building, const Place& place,
+Result<model::ElectricityProfile> fit_profile_with_fans(
+    std::span<const model::HourlyLoad> loads, const Building& building, const Place& place,
     const std::vector<metering::Month>& months) {
-  profile::KnownLoads known{.exterior_kW = building.use.exterior_kW,
-                            .fans_and_pumps_kW = {},
-                            .lighting_W_m2 = building.use.lighting_W_m2,
-                            .plugs_W_m2 = building.use.plugs_W_m2};
-  auto profile = profile::fit_profile(loads, place.holidays, known);
+  model::KnownLoads known{.exterior_kW = building.use.exterior_kW,
+                          .fans_and_pumps_kW = {},
+                          .lighting_W_m2 = building.use.lighting_W_m2,
+                          .plugs_W_m2 = building.use.plugs_W_m2};
+  auto profile = model::fit_profile(loads, place.holidays, known);
   if (!profile || !building.air) return profile;
   for (int round = 0; round < 2; ++round) {
     const auto drivers = TRY(make_drivers(months, place.calendar, place.holidays, building,
@@ -48,7 +48,7 @@ Result<profile::ElectricityProfile> fit_profile_with_fans(
       fans_and_pumps_kWh += month[EndUse::fans] + month[EndUse::pumps];
     }
     known.fans_and_pumps_kW = spread_fans_and_pumps(building, drivers, fans_and_pumps_kWh);
-    profile = profile::fit_profile(loads, place.holidays, known);
+    profile = model::fit_profile(loads, place.holidays, known);
     if (!profile) return profile;
   }
   return profile;

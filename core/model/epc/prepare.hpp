@@ -7,9 +7,9 @@
 
 #include "core/metering/civil_time.hpp"
 #include "core/model/building.hpp"
+#include "core/model/electricity_profile.hpp"
 #include "core/model/epc/climate_classes.hpp"
 #include "core/model/epc/epc_model.hpp"
-#include "core/profile/electricity_profile.hpp"
 #include "core/result.hpp"
 #include "core/weather/weather_series.hpp"
 
@@ -27,8 +27,8 @@ struct Place {
 /// values, so that the model adds back exactly what the profile leaves out. Fans depend on loads
 /// and loads on fans: two rounds converge to well below one per cent.
 /// @param months  The months of the loads; the weather must cover them.
-[[nodiscard]] Result<profile::ElectricityProfile> fit_profile_with_fans(
-    std::span<const profile::HourlyLoad> loads, const Building& building, const Place& place,
+[[nodiscard]] Result<model::ElectricityProfile> fit_profile_with_fans(
+    std::span<const model::HourlyLoad> loads, const Building& building, const Place& place,
     const std::vector<metering::Month>& months);
 
 /// The classes of a period, shared by all copies of a model.

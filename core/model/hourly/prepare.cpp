@@ -54,11 +54,11 @@ HourlyMeans plant_electricity(const Building& building, Drivers drivers) {
 }
 
 /// Mean of the subtracted loads, by kind of day and hour.
-HourlySchedule mean_schedule(std::span<const profile::HourlyLoad> loads, const Holidays& holidays,
+HourlySchedule mean_schedule(std::span<const model::HourlyLoad> loads, const Holidays& holidays,
                              const HourlyMeans& taken) {
   HourlySchedule sum_kW;
   HourlySchedule count;
-  for (const profile::HourlyLoad& load : loads) {
+  for (const model::HourlyLoad& load : loads) {
     const DayType day = day_type(load.date, holidays);
     sum_kW.at(day, load.hour) += taken.at({load.date, load.hour});
     count.at(day, load.hour) += 1.0;
@@ -81,16 +81,16 @@ void add_to(HourlySchedule& schedule, const HourlySchedule& other) {
 
 }  // namespace
 
-Result<profile::ElectricityProfile> fit_profile_without_plant(
-    std::span<const profile::HourlyLoad> loads, const Building& building, const epc::Place& place,
+Result<model::ElectricityProfile> fit_profile_without_plant(
+    std::span<const model::HourlyLoad> loads, const Building& building, const epc::Place& place,
     const std::vector<metering::Month>& months) {
   // Outdoor lamps follow the sun, not the clock, so they are subtracted with the plant.
-  const profile::KnownLoads known{.exterior_kW = 0.0,
-                                  .fans_and_pumps_kW = {},
-                                  .lighting_W_m2 = building.use.lighting_W_m2,
-                                  .plugs_W_m2 = building.use.plugs_W_m2};
-  auto profile = profile::fit_profile(loads, place.holidays, known);
-  std::vector<profile::HourlyLoad> rest(loads.begin(), loads.end());
+  const model::KnownLoads known{.exterior_kW = 0.0,
+                                .fans_and_pumps_kW = {},
+                                .lighting_W_m2 = building.use.lighting_W_m2,
+                                .plugs_W_m2 = building.use.plugs_W_m2};
+  auto profile = model::fit_profile(loads, place.holidays, known);
+  std::vector<model::HourlyLoad> rest(loads.begin(), loads.end());
   for (int round = 0; profile && round < kRounds; ++round) {
     auto drivers =
         TRY(make_drivers(months, place.calendar, place.holidays, building, profile->loads,
@@ -99,7 +99,7 @@ Result<profile::ElectricityProfile> fit_profile_without_plant(
     for (std::size_t i = 0; i < rest.size(); ++i) {
       rest[i].mean_kW = loads[i].mean_kW - plant.at({loads[i].date, loads[i].hour});
     }
-    profile = profile::fit_profile(rest, place.holidays, known);
+    profile = model::fit_profile(rest, place.holidays, known);
     if (!profile || round + 1 < kRounds) continue;
     profile->known.fans_and_pumps_kW = mean_schedule(loads, place.holidays, plant);
     add_to(profile->measured_kW, profile->known.fans_and_pumps_kW);

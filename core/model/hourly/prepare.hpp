@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "core/model/electricity_profile.hpp"
 #include "core/model/epc/prepare.hpp"
-#include "core/profile/electricity_profile.hpp"
 
 namespace recald::model::hourly {
 
@@ -16,8 +16,8 @@ namespace recald::model::hourly {
 /// @param months  The months of the loads; the weather must cover them.
 /// @return the profile, with the mean of the subtracted loads among the known loads and in
 ///         `measured_kW`; its check is for the months without them.
-[[nodiscard]] Result<profile::ElectricityProfile> fit_profile_without_plant(
-    std::span<const profile::HourlyLoad> loads, const Building& building, const epc::Place& place,
+[[nodiscard]] Result<model::ElectricityProfile> fit_profile_without_plant(
+    std::span<const model::HourlyLoad> loads, const Building& building, const epc::Place& place,
     const std::vector<metering::Month>& months);
 
 }  // namespace recald::model::hourly

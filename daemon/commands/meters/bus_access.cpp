@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "adapters/system/file_holders.hpp"
+#include "adapters/system/files/file_holders.hpp"
 
 namespace recald::daemon {
 namespace {

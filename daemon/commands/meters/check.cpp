@@ -4,7 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/meters/check_alerts.hpp"

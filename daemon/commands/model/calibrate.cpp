@@ -4,7 +4,7 @@
 #include <sstream>
 #include <vector>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/model/calibrate_aloud.hpp"
 #include "daemon/commands/model/calibration_options.hpp"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/site/calibrate/design_outliers.hpp"
 
 namespace recald::daemon {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/diagnose/footprint.hpp"

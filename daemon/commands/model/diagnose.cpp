@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "adapters/models/model_store.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "adapters/system/parallel_for.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/views/diagnosis/diagnosis_files.hpp"
+#include "adapters/views/diagnosis/diagnosis_words.hpp"
 #include "core/diagnosis/effects/support/effect.hpp"
 #include "core/display/warning.hpp"
 #include "core/text/nearest.hpp"
@@ -21,9 +23,7 @@
 #include "daemon/site/diagnose/proposed_version.hpp"
 #include "daemon/site/diagnose/site_diagnosis.hpp"
 #include "daemon/site/model/energyplus_effects.hpp"
-#include "daemon/site/results/diagnosis_files.hpp"
 #include "daemon/site/results/diagnosis_folder.hpp"
-#include "daemon/site/results/diagnosis_words.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -144,7 +144,7 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
 
   const auto fail = [&](const Error& error) {
     // What was found is not lost with a full disk.
-    if (!arguments.json) console.out << diagnosis_words(diagnosis, *problem, done->others);
+    if (!arguments.json) console.out << views::diagnosis_words(diagnosis, *problem, done->others);
     return console.fail(error);
   };
   const std::string at = generated_at();
@@ -173,7 +173,8 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
   modelled->facts.seed = arguments.seed;
   modelled->facts.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::string json = diagnosis_json(diagnosis, *problem, modelled->facts, done->others);
+  const std::string json =
+      views::diagnosis_json(diagnosis, *problem, modelled->facts, done->others);
   if (!arguments.out.empty()) {
     const auto written = write_diagnosis(*done, *modelled, *problem, json, at, arguments.out);
     if (!written) return fail(written.error());
@@ -183,7 +184,7 @@ int run_diagnose(const DiagnoseArguments& arguments, const Console& console) {
     if (auto active = store.activate(applied, at); !active) return fail(active.error());
   }
   console.out << (arguments.json ? json
-                                 : diagnosis_words(diagnosis, *problem, done->others) +
+                                 : views::diagnosis_words(diagnosis, *problem, done->others) +
                                        fate_words(diagnosis, arguments, applied));
   return kSuccess;
 }

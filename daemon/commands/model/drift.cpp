@@ -1,15 +1,17 @@
 #include <chrono>
 
 #include "adapters/system/parallel_for.hpp"
+#include "adapters/views/drift/drift_json.hpp"
+#include "adapters/views/drift/drift_report.hpp"
+#include "adapters/views/drift/drift_words.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/commands/model/calibration_options.hpp"
 #include "daemon/commands/open_site.hpp"
+#include "daemon/site/drift/site_drift.hpp"
 #include "daemon/site/model/active_effects.hpp"
-#include "daemon/site/results/drift_json.hpp"
-#include "daemon/site/results/drift_report.hpp"
-#include "daemon/site/results/drift_words.hpp"
+#include "daemon/site/results/report_parts.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -52,13 +54,13 @@ int run_drift(const DriftArguments& arguments, const Console& console) {
   if (!drift) return console.fail(drift.error());
   modelled->facts.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::string json = drift_json(*drift, modelled->facts);
+  const std::string json = views::drift_json(*drift, modelled->facts);
   if (!arguments.out.empty()) {
-    const auto written = write_drift(modelled->site.config, *drift, modelled->facts, generated_at(),
-                                     json, arguments.out);
+    const auto written = views::write_drift(site_line_of(modelled->site.config), *drift,
+                                            modelled->facts, generated_at(), json, arguments.out);
     if (!written) return console.fail(written.error());
   }
-  console.out << (arguments.json ? json : drift_words(*drift));
+  console.out << (arguments.json ? json : views::drift_words(*drift));
   return kSuccess;
 }
 

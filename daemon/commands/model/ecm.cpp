@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "adapters/views/savings/savings_words.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/generated_at.hpp"
 #include "daemon/commands/model/calibration_options.hpp"
@@ -12,7 +13,7 @@
 #include "daemon/site/savings/measure_file.hpp"
 #include "daemon/site/savings/measure_runs.hpp"
 #include "daemon/site/savings/savings_files.hpp"
-#include "daemon/site/savings/savings_words.hpp"
+#include "daemon/site/savings/savings_report.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -46,7 +47,8 @@ int deliver_savings(const FinishedCalibration& finished, const Savings& savings,
     const auto written = write_savings(finished, savings, generated_at(), json, arguments.out);
     if (!written) return console.fail(written.error());
   }
-  console.out << (arguments.json ? json : savings_words(savings_report_of(finished, savings, "")));
+  console.out << (arguments.json ? json
+                                 : views::savings_words(savings_report_of(finished, savings, "")));
   return kSuccess;
 }
 

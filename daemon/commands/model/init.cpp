@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/model/export_draft.hpp"
 #include "daemon/site/config/site_config.hpp"

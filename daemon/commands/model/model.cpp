@@ -6,7 +6,7 @@
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/models/version_file.hpp"
-#include "adapters/report/format.hpp"
+#include "adapters/views/frame/format.hpp"
 #include "core/display/id_words.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/site/config/site_config.hpp"
@@ -57,7 +57,7 @@ std::string effect_words(const AddedEffect& added) {
                                  added.meter.empty() ? "" : ", meter " + added.meter,
                                  period_words(added), added.physics);
   text += fmt::format("  probability {}, evidence gain {:.1f} nats\n",
-                      report::probability_text(added.probability), added.log_evidence_gain);
+                      views::probability_text(added.probability), added.log_evidence_gain);
   for (const auto& rival : added.rivals) {
     if (rival.probability < kRivalWorthALine) continue;
     text += fmt::format("  rival: {} {:.0f} %\n", rival.effect, 100.0 * rival.probability);

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
@@ -9,7 +9,7 @@
 namespace recald::daemon {
 namespace {
 
-void print_profile(const profile::ElectricityProfile& profile, const Console& console) {
+void print_profile(const model::ElectricityProfile& profile, const Console& console) {
   console.out << "hour";
   for (const char* day : model::kDayTypeNames) console.out << fmt::format("  {:>24}", day);
   console.out << "\n";

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "adapters/system/files/write_file.hpp"
 #include "adapters/system/time_zone_release.hpp"
-#include "adapters/system/write_file.hpp"
 #include "core/display/unit.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/generated_at.hpp"

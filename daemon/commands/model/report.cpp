@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "core/text/ascii.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/commands/generated_at.hpp"

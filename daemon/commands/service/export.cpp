@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/gateway/upkeep/export_csv.hpp"

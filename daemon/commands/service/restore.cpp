@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/stores/open.hpp"
-#include "adapters/system/file_lock.hpp"
-#include "adapters/system/file_rights.hpp"
+#include "adapters/system/files/file_lock.hpp"
+#include "adapters/system/files/file_rights.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"

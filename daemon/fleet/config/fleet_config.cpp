@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "adapters/system/read_file.hpp"
+#include "adapters/system/files/read_file.hpp"
 #include "adapters/toml/toml_reader.hpp"
 #include "daemon/site/config/service/server_access.hpp"
 

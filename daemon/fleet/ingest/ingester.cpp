@@ -99,7 +99,7 @@ class Ingester {
            IngestCounts& counts)
       : broker_(broker), notify_(tell), stop_(stop), counts_(counts) {}
 
-  /// Takes batches until it is told to stop. @return or why the record or the broker cannot go on.
+  /// Takes batches until a stop is requested. @return or why the record or the broker cannot go on.
   Result<void> serve(postgres::Connection& record) {
     if (auto checked = record::check_schema(record); !checked) return checked;
     Arrivals arrivals;

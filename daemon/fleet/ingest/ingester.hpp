@@ -1,7 +1,7 @@
 /// Takes what gateways send through a broker into the record of the fleet, and tells them what they
 /// may forget.
 ///
-/// The record's word counts, never the broker's: a gateway is told after the commit, and told again
+/// The record's word counts, never the broker's: a gateway is answered after the commit, and again
 /// whenever the broker or the record was away. So the broker needs no memory, and several ingesters
 /// may share the work.
 #pragma once
@@ -21,7 +21,7 @@ struct IngestCounts {
   std::int64_t refused = 0;
 };
 
-/// Takes batches until it is told to stop. While the record is away it leaves the broker and tries
+/// Takes batches until a stop is requested. While the record is away it leaves the broker and tries
 /// again, 5 s to 60 s apart.
 /// @param tell  Gets a sentence about each change, and about each site whose batches are refused,
 ///              at most once in ten minutes.

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "adapters/record/schema.hpp"
-#include "adapters/report/format.hpp"
-#include "adapters/report/html.hpp"
+#include "adapters/views/frame/format.hpp"
+#include "adapters/views/frame/html.hpp"
 #include "daemon/fleet/serve/job_json.hpp"
 #include "daemon/fleet/serve/portfolio.hpp"
 #include "daemon/gateway/serve/api/parameters.hpp"
@@ -29,9 +29,9 @@ namespace {
 using http::Method;
 using http::Request;
 using http::Response;
-using report::Cell;
-using report::Html;
-using report::Table;
+using views::Cell;
+using views::Html;
+using views::Table;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsShown = 500;
@@ -59,7 +59,7 @@ Response page(const FleetServed& served, const std::string& title, const Html& m
 Response unavailable(const Error& error) { return refusal(error).value(); }
 
 std::string money_text(const std::optional<double>& money, const std::string& currency) {
-  return money ? fmt::format("{} {}", report::number_text(std::round(*money)), currency) : "–";
+  return money ? fmt::format("{} {}", views::number_text(std::round(*money)), currency) : "–";
 }
 
 /// "Town hall (north)"
@@ -96,7 +96,7 @@ void write_select(Html& html, const char* name, const std::string& label,
   html.markup("<option value=\"\">all</option>");
   for (const std::string& value : values) {
     if (value.empty()) continue;
-    html.markup(fmt::format("<option value=\"{}\"{}>", report::escape(value),
+    html.markup(fmt::format("<option value=\"{}\"{}>", views::escape(value),
                             value == chosen ? " selected" : ""))
         .text(value)
         .markup("</option>");
@@ -126,7 +126,7 @@ void write_filter(Html& html, const Portfolio& all, const PortfolioFilter& filte
 std::string named_text(const PortfolioRow& row) {
   if (row.named.empty()) return "–";
   const NamedEffect& first = row.named.front();
-  return fmt::format("{} ({}{})", first.title, report::probability_text(first.probability),
+  return fmt::format("{} ({}{})", first.title, views::probability_text(first.probability),
                      row.named.size() > 1 ? fmt::format("; {} more", row.named.size() - 1) : "");
 }
 
@@ -140,7 +140,7 @@ Cell state_cell(const PortfolioRow& row) {
   if (row.feed == Feed::late) return {"▲ no readings for a day", "warn"};
   if (!row.month) return {"waits for its first month", "muted"};
   if (!row.is_accepted) return {"▲ not converged", "warn"};
-  return {fmt::format("✔ {}", report::month_text(*row.month)), "good"};
+  return {fmt::format("✔ {}", views::month_text(*row.month)), "good"};
 }
 
 void write_sites(Html& html, const std::vector<const PortfolioRow*>& rows) {
@@ -149,10 +149,9 @@ void write_sites(Html& html, const std::vector<const PortfolioRow*>& rows) {
                                "What has changed", "Likely cause"});
   for (const PortfolioRow* row : rows) {
     const record::SiteDescription& site = row->site.site;
-    const std::string gap =
-        row->worst_cvrmse
-            ? fmt::format("{}, {}", row->worst_meter, report::percent_text(*row->worst_cvrmse))
-            : "–";
+    const std::string gap = row->worst_cvrmse ? fmt::format("{}, {}", row->worst_meter,
+                                                            views::percent_text(*row->worst_cvrmse))
+                                              : "–";
     table.row({{.text = site_words(site), .address = site_address(site.id)},
                {site.use.empty() ? "–" : site.use},
                state_cell(*row),
@@ -167,9 +166,9 @@ void write_sites(Html& html, const std::vector<const PortfolioRow*>& rows) {
 std::string quartiles_text(const std::optional<PortfolioGroup::Quartiles>& quartiles,
                            double factor) {
   if (!quartiles) return "–";
-  return fmt::format("{} ({} to {})", report::number_text(factor * quartiles->q50),
-                     report::number_text(factor * quartiles->q25),
-                     report::number_text(factor * quartiles->q75));
+  return fmt::format("{} ({} to {})", views::number_text(factor * quartiles->q50),
+                     views::number_text(factor * quartiles->q25),
+                     views::number_text(factor * quartiles->q75));
 }
 
 void write_groups(Html& html, const std::vector<PortfolioGroup>& groups) {
@@ -180,11 +179,11 @@ void write_groups(Html& html, const std::vector<PortfolioGroup>& groups) {
   for (const PortfolioGroup& group : groups) {
     table.row({{group.use.empty() ? "not said" : group.use},
                {group.climate.empty() ? "not said" : group.climate},
-               {report::count_text(group.sites), "number"},
+               {views::count_text(group.sites), "number"},
                {quartiles_text(group.energy_kWh_m2_year, 1.0), "number"},
                {quartiles_text(group.worst_cvrmse, 100.0), "number"},
-               {report::count_text(group.with_alarms), "number"},
-               {report::count_text(group.with_names), "number"}});
+               {views::count_text(group.with_alarms), "number"},
+               {views::count_text(group.with_names), "number"}});
   }
   table.write(html);
 }
@@ -222,10 +221,10 @@ void write_map(Html& html, const std::vector<const PortfolioRow*>& rows) {
         fmt::format("<a href=\"{}\" aria-label=\"{}\"><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" "
                     "class=\"{}\" "
                     "fill=\"currentColor\"><title>{}</title></circle></a>",
-                    report::escape(site_address(site.id)), report::escape(words),
+                    views::escape(site_address(site.id)), views::escape(words),
                     kMargin + (*site.longitude_deg - west) * squeeze * scale,
                     kMargin + (north - *site.latitude_deg) * scale, row->urgency() > 0 ? 7 : 4,
-                    state.css_class, report::escape(words)));
+                    state.css_class, views::escape(words)));
   }
   html.markup("</svg></figure>");
 }
@@ -245,7 +244,7 @@ std::string summary_text(const std::vector<const PortfolioRow*>& rows) {
   return fmt::format(
       "{} sites: {} silent, {} late, {} with a wrong clock, {} with a job that failed, {} with "
       "changes, {} with a likely cause.",
-      report::count_text(static_cast<double>(rows.size())), silent, late, ahead, troubled, changed,
+      views::count_text(static_cast<double>(rows.size())), silent, late, ahead, troubled, changed,
       named);
 }
 
@@ -350,7 +349,7 @@ void write_jobs(Html& html, const std::string& caption, const std::vector<record
                {.text = job.site, .address = site_address(job.site)},
                {metering::to_string(job.month)},
                job_state_cell(job),
-               {report::count_text(job.tries), "number"},
+               {views::count_text(job.tries), "number"},
                {job.reason.empty() ? "–" : job.reason}});
   }
   table.write(html);
@@ -382,7 +381,7 @@ Response site_page(const FleetServed& served, const std::string& id) {
   for (const std::string& alarm : row.alarms) html.element("p", "▲ " + alarm, "warn");
   for (const NamedEffect& named : row.named) {
     html.element("p", fmt::format("Likely cause: {} ({}), {} a month", named.title,
-                                  report::probability_text(named.probability),
+                                  views::probability_text(named.probability),
                                   money_text(named.money_month, row.site.site.currency)));
   }
   write_results(html, results);
@@ -454,7 +453,7 @@ Response rerun_page(const FleetServed& served, const Request& request) {
   for (const record::FleetJob& job : *jobs) body["jobs"].push_back(job.number);
   html.markup(fmt::format("<p><button type=\"button\" data-post=\"/api/v1/rerun\" "
                           "data-body=\"{}\">",
-                          report::escape(body.dump())))
+                          views::escape(body.dump())))
       .text(fmt::format("Run these {} jobs again", jobs->size()))
       .markup("</button></p><p id=\"said\" role=\"status\"></p>");
   write_jobs(html, "What would run, with the present site files", *jobs);

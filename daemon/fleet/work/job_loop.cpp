@@ -12,8 +12,8 @@
 
 #include "adapters/record/schema.hpp"
 #include "adapters/system/child_process.hpp"
-#include "adapters/system/read_file.hpp"
-#include "adapters/system/scratch_folder.hpp"
+#include "adapters/system/files/read_file.hpp"
+#include "adapters/system/files/scratch_folder.hpp"
 #include "daemon/fleet/config/open_record.hpp"
 #include "daemon/fleet/work/work_folder.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "adapters/system/read_file.hpp"
+#include "adapters/system/files/read_file.hpp"
 #include "adapters/toml/toml_reader.hpp"
 
 namespace recald::daemon {

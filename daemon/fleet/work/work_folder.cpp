@@ -11,8 +11,8 @@
 #include "adapters/record/ingest.hpp"
 #include "adapters/record/sites.hpp"
 #include "adapters/stores/open.hpp"
-#include "adapters/system/read_file.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/read_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/fleet/work/job_summary.hpp"
 #include "daemon/gateway/run/site_jobs.hpp"
 

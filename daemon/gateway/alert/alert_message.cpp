@@ -101,8 +101,8 @@ AlertMessage alert_message(const SiteConfig& site, const metering::LocalCalendar
   if (events.size() > kShownMax) {
     message.text += fmt::format("And {} more.\n\n", events.size() - kShownMax);
   }
-  message.text += fmt::format("Times are in {}. [alerts] in the site file says who is told what.\n",
-                              site.timezone);
+  message.text += fmt::format(
+      "Times are in {}. [alerts] in the site file says who is notified of what.\n", site.timezone);
   message.document = document_of(site, message.subject, std::move(alerts));
   return message;
 }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "adapters/http/url.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "daemon/gateway/ingest/plausible_time.hpp"
 
 namespace recald::daemon {
@@ -18,7 +18,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kHeardMax = 1'000;
 constexpr std::size_t kNotifiedMax = 1'000;
-/// What a new destination is told of the past. The recovery of a store at the start is in it.
+/// How much of the past a new destination receives. The recovery of a store at the start is in it.
 constexpr std::chrono::hours kNotifiedAtFirst{1};
 constexpr int kEventsOfThePast = 1'000;
 constexpr int kPagesMax = 20;                // of events at a look
@@ -70,13 +70,14 @@ Alerts::Alerts(Ports ports, std::shared_ptr<const SiteConfig> site,
       deliver_(std::move(deliver)),
       notify_(std::move(notify)),
       rules_(rules),
-      notified_(std::move(notified)) {
+      notified_(std::move(notified)),
+      wakeup_(ports.loop, [this] { poll(); }) {
   set_site(std::move(site));
 }
 
 Alerts::~Alerts() { stop_.request_stop(); }
 
-void Alerts::start() { schedule(rules_.gather); }
+void Alerts::start() { poll_after(rules_.gather); }
 
 void Alerts::set_site(std::shared_ptr<const SiteConfig> site) {
   site_ = std::move(site);
@@ -91,7 +92,7 @@ void Alerts::set_site(std::shared_ptr<const SiteConfig> site) {
                         .position = known == outgoing_.end() ? std::nullopt : known->position});
   }
   outgoing_ = std::move(outgoing);
-  schedule(rules_.gather);
+  poll_after(rules_.gather);
 }
 
 void Alerts::heard(const StoreEvent& event) {
@@ -99,23 +100,15 @@ void Alerts::heard(const StoreEvent& event) {
   if (event.kind == "store_accepts") store_refuses_ = false;
   heard_.push_back({event, ports_.loop.now().monotonic});
   keep_newest(heard_, kHeardMax);
-  schedule(rules_.gather);
+  poll_after(rules_.gather);
 }
 
-void Alerts::schedule(milliseconds wait) {
-  if (outgoing_.empty()) return;
-  const milliseconds due = ports_.loop.now().monotonic + wait;
-  if (due_ && *due_ <= due) return;
-  due_ = due;
-  ports_.loop.after(wait, alive_.guard([this, due] {
-    if (due_ != due) return;
-    due_.reset();
-    poll();
-  }));
+void Alerts::poll_after(milliseconds wait) {
+  if (!outgoing_.empty()) wakeup_.after(wait);
 }
 
 void Alerts::poll() {
-  schedule(rules_.poll_every);
+  poll_after(rules_.poll_every);
   if (is_sending_) return;  // its end looks again
   const Moment now = ports_.loop.now();
   for (Outgoing& outgoing : outgoing_) {
@@ -244,7 +237,7 @@ void Alerts::send(const Outgoing& outgoing, Pending pending, Instant now) {
 void Alerts::finish(const std::string& cursor, const Pending& pending, const Result<void>& sent) {
   is_sending_ = false;
   const auto outgoing = std::ranges::find(outgoing_, cursor, &Outgoing::cursor);
-  if (outgoing == outgoing_.end()) return schedule(milliseconds{0});  // removed by a reload
+  if (outgoing == outgoing_.end()) return poll_after(milliseconds{0});  // removed by a reload
   const Moment now = ports_.loop.now();
   const std::string words = destination_words(outgoing->destination);
   if (!sent) {
@@ -261,7 +254,7 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
                                words, sent.error().message),
            .is_counted = true});
     }
-    return schedule(milliseconds{0});
+    return poll_after(milliseconds{0});
   }
   outgoing->wait = outgoing->not_before = milliseconds{0};
   auto& notified = notified_[cursor];
@@ -280,7 +273,7 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
                                    : fmt::format("{} alerts were", pending.events.size()),
                                words),
            .is_counted = true});
-  schedule(milliseconds{0});
+  poll_after(milliseconds{0});
 }
 
 }  // namespace recald::daemon

@@ -1,7 +1,7 @@
-/// Tells people and programs outside what has happened: each destination everything once, in order.
+/// Notifies people and programs outside of events: each destination of all of them, once, in order.
 ///
 /// The store is the outbox: a destination has a cursor over its events, which moves when a message
-/// was taken. What happens while the store accepts nothing is told from memory. Deliveries run on a
+/// was taken. Events that the store refuses are sent from memory. Deliveries run on a
 /// worker of their own, so that no poll waits for a mail server.
 #pragma once
 
@@ -19,6 +19,7 @@
 #include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
+#include "adapters/ports/wakeup.hpp"
 #include "adapters/ports/worker.hpp"
 #include "daemon/gateway/alert/alert_message.hpp"
 
@@ -29,7 +30,7 @@ struct AlertRules {
   std::chrono::milliseconds poll_every{60'000};  ///< For the end of quiet hours.
   std::chrono::milliseconds retry_min{60'000};   ///< After a failure; doubles.
   std::chrono::milliseconds retry_max{3'600'000};
-  std::chrono::hours forget{72};  ///< Older events are not told any more.
+  std::chrono::hours forget{72};  ///< Older events are not sent any more.
   int events = 500;               ///< In one message at most; read at a time.
 };
 
@@ -52,7 +53,7 @@ class Alerts {
     Worker& worker;  ///< For this object alone.
   };
 
-  /// What a destination has been told, by the name of its cursor.
+  /// What a destination has received, by the name of its cursor.
   struct NotifiedEvent {
     metering::Instant time;
     std::string kind;
@@ -60,8 +61,8 @@ class Alerts {
   };
   using Notified = std::map<std::string, std::deque<NotifiedEvent>>;
 
-  /// @param tell  Receives events about the deliveries themselves.
-  /// @param told  By an earlier object, whose store was another.
+  /// @param notify    Receives events about the deliveries themselves.
+  /// @param notified  By an earlier object, whose store was another.
   Alerts(Ports ports, std::shared_ptr<const SiteConfig> site, metering::LocalCalendar calendar,
          Deliver deliver, std::function<void(StoreEvent)> notify, Notified notified = {},
          const AlertRules& rules = {});
@@ -70,13 +71,13 @@ class Alerts {
   Alerts(const Alerts&) = delete;
   Alerts& operator=(const Alerts&) = delete;
 
-  /// Tells what an earlier process could not.
+  /// Sends what an earlier process could not.
   void start();
 
   /// Call with each event when it happens, whether or not the store accepts it.
   void heard(const StoreEvent& event);
 
-  /// Continues with another site file. Destinations that stay are told what is new to them.
+  /// Continues with another site file. Destinations that stay receive what is new to them.
   void set_site(std::shared_ptr<const SiteConfig> site);
 
   [[nodiscard]] Notified take_notified() { return std::move(notified_); }
@@ -85,17 +86,17 @@ class Alerts {
   struct Outgoing {
     AlertDestination destination;
     std::string cursor;                       ///< Its name.
-    std::optional<std::int64_t> position;     ///< Ahead of the store's if that refuses to be told.
+    std::optional<std::int64_t> position;     ///< Ahead of the store's if that refuses the write.
     std::chrono::milliseconds not_before{0};  ///< By the monotonic clock.
     std::chrono::milliseconds wait{0};        ///< Before the next try; 0: the last one succeeded.
   };
-  /// What a destination has to be told.
+  /// What a destination has still to receive.
   struct Pending {
     std::vector<StoreEvent> events;
-    std::optional<std::int64_t> position = {};  ///< Of the cursor once they are told, if it moves.
+    std::optional<std::int64_t> position = {};  ///< Of the cursor once they are sent, if it moves.
   };
 
-  void schedule(std::chrono::milliseconds wait);
+  void poll_after(std::chrono::milliseconds wait);
   void poll();
   [[nodiscard]] Result<Pending> pending_for(Outgoing& outgoing, const Moment& now);
   [[nodiscard]] Result<std::int64_t> position_of(Outgoing& outgoing, metering::Instant now);
@@ -124,7 +125,7 @@ class Alerts {
   std::deque<Heard> heard_;
   bool store_refuses_ = false;
   bool is_sending_ = false;
-  std::optional<std::chrono::milliseconds> due_;
+  Wakeup wakeup_;
   std::stop_source stop_;
   Alive alive_;
 };

@@ -24,7 +24,7 @@ class BrokerState {
  public:
   BrokerState(Loop& loop, std::unique_ptr<Worker> worker, std::shared_ptr<const SiteConfig> site,
               std::shared_ptr<BrokerLink> link);
-  /// Waits for what is being published, which is told to stop.
+  /// Stops what is being published, and waits for it.
   ~BrokerState();
   BrokerState(const BrokerState&) = delete;
   BrokerState& operator=(const BrokerState&) = delete;

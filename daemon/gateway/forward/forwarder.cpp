@@ -29,7 +29,7 @@ Sent send_safely(Sink& sink, const OutgoingBatch& batch, const std::stop_token& 
 
 const OutboxEntry kEndOfHistory{
     .number = record::kHistorySent, .meter = "", .interval = std::chrono::seconds{1}, .stored = {}};
-constexpr std::chrono::hours kCalm{24};  // without being told anew
+constexpr std::chrono::hours kCalm{24};  // without a resend
 constexpr int kResults_max = 10;         // of a tenth of a megabyte each
 constexpr std::array kJobKinds{JobKind::calibration, JobKind::diagnosis};
 
@@ -68,6 +68,7 @@ Forwarder::Forwarder(Ports ports, std::unique_ptr<Worker> worker, Destination de
       notify_(std::move(notify)),
       rules_(rules),
       batch_(rules.batch),
+      wakeup_(ports.loop, [this] { poll(); }),
       worker_(std::move(worker)) {}
 
 Forwarder::~Forwarder() { stop_.request_stop(); }
@@ -79,26 +80,15 @@ DestinationStatus Forwarder::status() const {
   return status;
 }
 
-void Forwarder::schedule(milliseconds wait) {
-  const milliseconds due = ports_.loop.now().monotonic + wait;
-  if (due_ && *due_ <= due) return;
-  due_ = due;
-  ports_.loop.after(wait, alive_.guard([this, due] {
-    if (due_ != due) return;
-    due_.reset();
-    poll();
-  }));
-}
-
 void Forwarder::try_now() {
   is_asked_ = is_sending_;
   if (is_sending_ || wait_ == milliseconds{0}) return;
   not_before_ = milliseconds{0};
-  schedule(milliseconds{0});
+  wakeup_.after(milliseconds{0});
 }
 
 void Forwarder::poll() {
-  schedule(rules_.poll_every);
+  wakeup_.after(rules_.poll_every);
   if (is_sending_ || ports_.loop.now().monotonic < not_before_) return;
   auto batch = next();
   // A store that cannot be read says so itself.
@@ -115,7 +105,7 @@ Result<OutgoingBatch> Forwarder::next() {
   if (destination_.wants_results) {
     batch.after.results = TRY(result_position());
   }
-  const auto from = position();  // first: what waits has a limit, whatever is told meanwhile
+  const auto from = position();  // first: what waits has a limit, whatever is sent meanwhile
   if (!from) return tl::unexpected(from.error());
   auto past = next_history();
   if (!past || past->size() > 0) return past;
@@ -127,7 +117,7 @@ Result<OutgoingBatch> Forwarder::next() {
   return batch;
 }
 
-/// @return an empty one: all of it was told, or none is wanted.
+/// @return an empty one: all of it was sent, or none is wanted.
 Result<OutgoingBatch> Forwarder::next_history() {
   OutgoingBatch batch;
   if (destination_.history.empty()) return batch;
@@ -212,7 +202,7 @@ Result<OutboxPosition> Forwarder::position() {
   return position;
 }
 
-/// A new destination is told of what happens from now on. @param last  Number of what happened
+/// A new destination receives what happens from now on. @param last  Number of what happened
 /// last.
 Result<std::int64_t> Forwarder::position_of(const std::string& cursor,
                                             const std::function<Result<std::int64_t>()>& last) {
@@ -249,7 +239,7 @@ void Forwarder::finish(const OutgoingBatch& batch, const Sent& sent) {
     case Sent::Outcome::refused:
       if (batch.size() > 1) {
         batch_ = static_cast<int>(batch.size()) / 2;
-        return schedule(milliseconds{0});
+        return wakeup_.after(milliseconds{0});
       }
       if (!set_aside(batch, sent.why)) return;
       break;
@@ -258,7 +248,7 @@ void Forwarder::finish(const OutgoingBatch& batch, const Sent& sent) {
   }
   report_success();
   batch_ = std::min(2 * batch_, rules_.batch);
-  schedule(milliseconds{0});
+  wakeup_.after(milliseconds{0});
 }
 
 /// @return whether the position could be stored; if not, the batch is sent again.
@@ -294,13 +284,13 @@ bool Forwarder::is_beyond_us(const OutgoingBatch& batch, const Sent& sent) const
   return sent.until->entries > batch.after.entries + batch_max;
 }
 
-/// What one side has and the other does not know of is not guessed: all is told again, under
+/// What one side has and the other does not know of is not guessed: all is sent again, under
 /// another identity.
 void Forwarder::resend_all(const OutgoingBatch& batch, const Sent& sent) {
   const bool is_behind = sent.outcome == Sent::Outcome::behind;
   const auto done = ports_.store.as_one([&]() -> Result<void> {
     if (auto begun = begin_anew(ports_.store, destination_.id); !begun) return begun;
-    // Of an outbox that it does not know, it is told what happens from now on.
+    // Of an outbox that it does not know, it receives what happens from now on.
     if (!is_behind || batch.is_history || *sent.until == record::Progress{}) return {};
     auto put = ports_.store.put_cursor(events_cursor(destination_.id),
                                        std::min(batch.after.events, sent.until->events));
@@ -320,7 +310,7 @@ void Forwarder::resend_all(const OutgoingBatch& batch, const Sent& sent) {
   anew_wait_ = std::clamp(2 * wait, rules_.retry_min, rules_.asked_max);
   anew_at_ = now;
   not_before_ = now + wait;
-  schedule(wait);
+  wakeup_.after(wait);
 }
 
 void Forwarder::report_resend(const std::string& why) {
@@ -359,7 +349,7 @@ void Forwarder::wait_after(const Sent& sent) {
   wait_ = std::max(wait_, std::min(asked, rules_.asked_max));
   const milliseconds until = is_asked_ ? milliseconds{0} : wait_;
   not_before_ = now.monotonic + until;
-  schedule(until);
+  wakeup_.after(until);
   why_ = sent.why;
   if (!is_first) return;
   notify_({.time = now.instant(),

@@ -1,4 +1,4 @@
-/// Tells one destination of everything that the store's outbox has for it, in order.
+/// Sends one destination everything that the store's outbox has for it, in order.
 ///
 /// Its position moves when a batch was taken, so a batch may be sent twice and none is left out.
 /// Sending happens on a worker of its own: no poll and no other destination waits for it.
@@ -17,6 +17,7 @@
 #include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
+#include "adapters/ports/wakeup.hpp"
 #include "adapters/ports/worker.hpp"
 #include "daemon/gateway/forward/sink.hpp"
 #include "daemon/gateway/forward/store_history.hpp"
@@ -34,14 +35,14 @@ struct ForwardRules {
   std::int64_t waiting_max = 2'000'000;
 };
 
-/// Who is told.
+/// Where to.
 struct Destination {
   std::string id;     ///< In the store; never changes, and has no secret in it.
   std::string words;  ///< For people: "Prometheus at metrics.example.org".
   bool wants_events = false;
   bool wants_results = false;
   bool has_identity = false;  ///< It remembers positions (outbox_identity).
-  /// Whose past it is told first, before what the outbox has.
+  /// Whose past it receives first, before what the outbox has.
   std::vector<MeterInStore> history = {};
 };
 
@@ -56,12 +57,12 @@ class Forwarder {
   /// @pre the store keeps an outbox for the destination (Store::keep_outbox_for)
   Forwarder(Ports ports, std::unique_ptr<Worker> worker, Destination destination,
             std::unique_ptr<Sink> sink, Notify notify, const ForwardRules& rules = {});
-  /// Waits for a batch that is being sent, which is told to stop.
+  /// Stops a batch that is being sent, and waits for it.
   ~Forwarder();
   Forwarder(const Forwarder&) = delete;
   Forwarder& operator=(const Forwarder&) = delete;
 
-  void start() { schedule(std::chrono::milliseconds{0}); }
+  void start() { wakeup_.after(std::chrono::milliseconds{0}); }
 
   /// The other side has shown that it is there: ends the wait after a failure. During an attempt:
   /// if that fails, the next follows at once.
@@ -71,7 +72,6 @@ class Forwarder {
   [[nodiscard]] DestinationStatus status() const;
 
  private:
-  void schedule(std::chrono::milliseconds wait);
   void poll();
   [[nodiscard]] Result<OutgoingBatch> next();
   [[nodiscard]] Result<OutgoingBatch> next_history();
@@ -103,14 +103,14 @@ class Forwarder {
   ForwardRules rules_;
   int batch_;  ///< Entries at a time now: fewer after a refusal, to find what is refused.
   std::chrono::milliseconds wait_{0};  ///< After the last failure; zero: it did not fail.
-  std::optional<std::chrono::milliseconds> anew_at_;  ///< When all was begun to be told again.
+  std::optional<std::chrono::milliseconds> anew_at_;  ///< When the last resend of everything began.
   std::chrono::milliseconds anew_wait_{0};            ///< Before the next time, if that is soon.
   std::chrono::milliseconds not_before_{0};
   std::string why_;
   std::optional<metering::Instant> sent_at_;
   bool is_sending_ = false;
   bool is_asked_ = false;  ///< try_now() during the attempt.
-  std::optional<std::chrono::milliseconds> due_;
+  Wakeup wakeup_;
   std::stop_source stop_;
   Alive alive_;
   std::unique_ptr<Worker> worker_;  ///< Last: its work must end before the members it uses.

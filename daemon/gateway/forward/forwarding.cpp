@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "adapters/http/url.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "adapters/system/worker_thread.hpp"
 #include "daemon/gateway/forward/mqtt_messages.hpp"
 #include "daemon/gateway/forward/record_sink.hpp"
@@ -44,7 +44,7 @@ Destination destination_of(const MqttConfig& config) {
           .wants_events = true};
 }
 
-/// A record has one broker or another: what it has been told stays the same.
+/// A record has one broker or another: what it has received stays the same.
 constexpr auto kFleet = "fleet";
 
 /// Everything that the store may have intervals of.
@@ -204,7 +204,7 @@ void Forwarding::on_fleet_state(bool is_connected, const std::string& why) {
   if (auto news = fleet_news_.on_state(words, is_connected, why)) notify(std::move(*news));
 }
 
-/// A destination that is not reached yet is one: it is told later.
+/// A destination that is not reached yet is one: it is sent everything later.
 void Forwarding::keep_outbox() {
   if (!ports_.is_on_disk) return;
   std::vector<std::string> ids;

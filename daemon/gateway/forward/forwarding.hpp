@@ -29,7 +29,7 @@ class Forwarding {
   struct Ports {
     Loop& loop;
     Store& store;
-    bool is_on_disk = true;   ///< Of the store: what is only in memory is told once it is on disk.
+    bool is_on_disk = true;   ///< Of the store: what is only in memory is sent once it is on disk.
     ForwardRules rules = {};  ///< Of every destination.
   };
   using Notify = std::function<void(StoreEvent)>;

@@ -1,4 +1,4 @@
-/// Connections to the brokers of a site file, and what people are told of them.
+/// Connections to the brokers of a site file, and the events about them.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,8 @@ namespace recald::daemon {
 class BrokerNews {
  public:
   /// As mqtt::Connection::OnState, or of an attempt to open. @param words  For people: "MQTT broker
-  /// at broker.example.org:1883". @return an event without its time; nothing: it was told before.
+  /// at broker.example.org:1883". @return an event without its time; nothing: it was reported
+  /// before.
   [[nodiscard]] std::optional<StoreEvent> on_state(const std::string& words, bool is_connected,
                                                    const std::string& why);
 

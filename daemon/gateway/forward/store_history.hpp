@@ -1,4 +1,4 @@
-/// What a store had before anybody was told of it, as entries like those of its outbox.
+/// What a store had before its first destination, as entries like those of its outbox.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ struct MeterInStore {
 /// months; the latest revision of each. Their numbers say where they are, so they mean the same
 /// whatever is stored meanwhile, and rise.
 /// @param meters  Those that the store does not have are passed over.
-/// @param after   Number of the last one that was told; 0: none.
+/// @param after   Number of the last one that was sent; 0: none.
 /// @return at most `limit`; empty: there are no more.
 [[nodiscard]] Result<std::vector<OutboxEntry>> history_after(
     Store& store, const std::vector<MeterInStore>& meters, std::int64_t after, int limit);

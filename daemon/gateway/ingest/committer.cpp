@@ -30,7 +30,8 @@ Committer::Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommi
       store_(store),
       rules_(rules),
       on_committed_(std::move(on_committed)),
-      on_refusal_(std::move(on_refusal)) {}
+      on_refusal_(std::move(on_refusal)),
+      wakeup_(loop, [this] { (void)flush(); }) {}
 
 /// The newest state of a register explains all intervals before it.
 void Committer::put_state(const StoreBatch::Register& entry) {
@@ -57,7 +58,7 @@ void Committer::add(StoreBatch batch) {
   give_up_what_is_too_much();
   if (waiting_.empty()) return;
   if (health_.is_degraded) return;  // the retry is scheduled
-  schedule(is_urgent ? milliseconds{0} : rules_.gather);
+  wakeup_.after(is_urgent ? milliseconds{0} : rules_.gather);
 }
 
 bool Committer::has_too_much() const {
@@ -72,18 +73,8 @@ void Committer::give_up_what_is_too_much() {
   (void)keep_newest(waiting_.events, rules_.intervals_max);
 }
 
-void Committer::schedule(milliseconds wait) {
-  const milliseconds due = loop_.now().monotonic + wait;
-  if (due_ && *due_ <= due) return;
-  due_ = due;
-  loop_.after(wait, alive_.guard([this, due] {
-    if (due_ != due) return;
-    (void)flush();
-  }));
-}
-
 Result<void> Committer::flush() {
-  due_.reset();
+  wakeup_.cancel();
   if (waiting_.empty()) return {};
   const milliseconds begin = loop_.now().monotonic;
   const auto counts = store_.commit(waiting_);
@@ -92,7 +83,7 @@ Result<void> Committer::flush() {
   if (!counts) {
     ++health_.failures;
     health_.why = counts.error().message;
-    schedule(rules_.retry);
+    wakeup_.after(rules_.retry);
     if (!std::exchange(health_.is_degraded, true) && on_refusal_) on_refusal_(health_.why);
     return tl::unexpected(counts.error());
   }

@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
+#include "adapters/ports/wakeup.hpp"
 #include "daemon/gateway/poll/latency_histogram.hpp"
 
 namespace recald::daemon {
@@ -56,7 +56,6 @@ class Committer {
   [[nodiscard]] std::size_t waiting_intervals() const { return waiting_.intervals.size(); }
 
  private:
-  void schedule(std::chrono::milliseconds wait);
   void put_state(const StoreBatch::Register& entry);
   [[nodiscard]] bool has_too_much() const;
   void give_up_what_is_too_much();
@@ -68,10 +67,7 @@ class Committer {
   OnRefusal on_refusal_;
   StoreBatch waiting_;
   CommitHealth health_;
-  /// When the next flush is due by the monotonic clock; a scheduled call compares it
-  /// with its own time.
-  std::optional<std::chrono::milliseconds> due_;
-  Alive alive_;
+  Wakeup wakeup_;
 };
 
 }  // namespace recald::daemon

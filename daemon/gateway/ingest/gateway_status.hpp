@@ -56,7 +56,7 @@ struct BusStatus {
   LatencyHistogram lateness;
 };
 
-/// Somebody outside who is told of each interval and month.
+/// A destination outside that receives each interval and month.
 struct DestinationStatus {
   std::string name;          ///< For people: "Prometheus at metrics.example.org".
   std::int64_t waiting = 0;  ///< Entries of the outbox that it has not had yet.

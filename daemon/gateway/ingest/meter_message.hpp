@@ -31,7 +31,7 @@ struct MeterMessage {
   std::vector<MqttRefusal> refusals;
 };
 
-/// Reads the values of all meters that are told by that topic.
+/// Reads the values of all meters that this topic carries.
 /// @param is_retained  It was kept by the broker: without a time of its own it may be of any age,
 ///                     and is left out.
 /// @param now          Values from more than five minutes later are refused.

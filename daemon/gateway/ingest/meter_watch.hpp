@@ -17,7 +17,7 @@ namespace recald::daemon {
 class MeterWatch {
  public:
   /// @param known_until  End of what the store has of a pushed meter: it may send rarely.
-  /// @param is_silent    An earlier process has told of its silence, and of no answer since.
+  /// @param is_silent    An earlier process has reported its silence, and no answer since.
   MeterWatch(std::string meter, std::chrono::seconds silence_max,
              std::optional<metering::Instant> known_until = {}, bool is_silent = false)
       : meter_(std::move(meter)),
@@ -39,7 +39,7 @@ class MeterWatch {
   std::string meter_;
   std::chrono::seconds silence_max_;
   std::optional<metering::Instant> since_;     ///< Silence counts from here; nothing: from now on.
-  std::optional<metering::Instant> heard_at_;  ///< As last told.
+  std::optional<metering::Instant> heard_at_;  ///< As last passed to evaluate().
   bool is_silent_;
 };
 

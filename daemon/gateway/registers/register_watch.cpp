@@ -5,11 +5,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/drift/month_hindcast.hpp"
 #include "daemon/gateway/ingest/meter_watch.hpp"
 #include "daemon/gateway/registers/drift_facts.hpp"
 #include "daemon/gateway/registers/register_table.hpp"
 #include "daemon/gateway/serve/api/readiness.hpp"
-#include "daemon/site/model/month_hindcast.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -106,7 +106,7 @@ void RegisterWatch::note_news(const GatewayStatus& status) {
   }
 }
 
-/// What cannot be read stays as it was; that the store cannot be read is told elsewhere.
+/// What cannot be read stays as it was; that the store cannot be read is reported elsewhere.
 void RegisterWatch::read_results() {
   if (const auto job = served_.store.last_accepted(JobKind::calibration); job && *job) {
     results_.calibrated = (*job)->ended;
@@ -245,7 +245,7 @@ void RegisterWatch::add_forecast(const ExpectedMonth& month, MeterFacts& facts) 
   const double so_far_kW = facts.open.daily_average_kWh / kHoursPerDay;
   const double mean_kW =
       (elapsed > 0.0 ? elapsed * so_far_kW : 0.0) + (1.0 - elapsed) * month.rest_kW;
-  const double scale_kW = forecast_scale_kW(mean_kW, month.mean_kW);
+  const double scale_kW = drift::forecast_scale_kW(mean_kW, month.mean_kW);
   const auto daily_kWh = [&](double error) { return kHoursPerDay * (mean_kW + error * scale_kW); };
   facts.open.forecast_kWh = {daily_kWh(month.error_q05), daily_kWh(month.error_q50),
                              daily_kWh(month.error_q95)};

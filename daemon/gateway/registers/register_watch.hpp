@@ -21,7 +21,7 @@ namespace recald::daemon {
 /// when something has changed, and every six hours all of it.
 class RegisterWatch {
  public:
-  /// Called with everything that is told, every two seconds.
+  /// Called with all values, every two seconds.
   using Publish = std::function<void(const SiteFacts&)>;
 
   RegisterWatch(Loop& loop, Served served, Publish publish);

@@ -76,8 +76,9 @@ Result<std::unique_ptr<Gateway>> Gateway::open(const SiteConfig& site,
                                                const GatewayPorts& ports, OnMonth on_month) {
   std::unique_ptr<Gateway> gateway{new Gateway{calendar, site, ports, std::move(on_month)}};
   gateway->buses_ = TRY(gateway->open_buses(site, {}));
-  gateway->mqtt_meters_ = TRY(gateway->open_mqtt_meters(site));
-  TRY(gateway->open_pushed(site));
+  gateway->mqtt_ = TRY(gateway->open_mqtt(site));
+  gateway->pushed_ = TRY(gateway->open_pushed(site));
+  gateway->gather_feeds();
   gateway->watch_meters_of(site);
   gateway->watch_sensors_of(site);
   return gateway;
@@ -96,56 +97,38 @@ Result<std::vector<std::unique_ptr<LiveBus>>> Gateway::open_buses(
   return opened;
 }
 
-/// As registers: a counter in messages has the same faults as one that is polled.
-Result<std::vector<LiveMeter>> Gateway::open_mqtt_meters(const SiteConfig& site) {
-  std::vector<LiveMeter> opened;
+Result<std::vector<std::unique_ptr<MqttFeed>>> Gateway::open_mqtt(const SiteConfig& site) {
+  std::vector<std::unique_ptr<MqttFeed>> opened;
   for (const MeterConfig& config : site.meters) {
     if (config.source != MeterSource::mqtt) continue;
-    const LiveMeterConfig live{.map = config.mqtt->map, .poll = config.mqtt->every};
-    auto meter = TRY(open_live_meter(config, live, calendar_, ports_.store));
-    opened.push_back(std::move(meter));
+    opened.push_back(TRY(MqttFeed::open(config, calendar_, ports_.store)));
   }
   return opened;
 }
 
-Result<void> Gateway::open_pushed(const SiteConfig& site) {
-  std::vector<PushedMeter> opened;
-  const auto open = [&](const metering::Meter& meter,
-                        std::optional<WeatherChannel> channel) -> Result<void> {
-    auto progress = TRY(MeterProgress::open(meter, calendar_, ports_.store));
-    progress.channel = std::move(channel);
-    opened.push_back(again_pushed(std::move(progress)));
-    return {};
-  };
-  for (const MeterConfig& config : site.meters) {
-    if (config.source != MeterSource::http) continue;
-    if (auto done = open(config.meter, {}); !done) return done;
-  }
-  for (const MeterConfig& sensor : site.sensors) {
-    if (sensor.source != MeterSource::http) continue;
-    for (const WeatherChannel& channel : channels_of(sensor)) {
-      if (auto done = open(stored_meter(sensor, channel), channel); !done) return done;
+Result<std::vector<std::unique_ptr<PushedFeed>>> Gateway::open_pushed(const SiteConfig& site) {
+  std::vector<std::unique_ptr<PushedFeed>> opened;
+  for (const auto* const list : {&site.meters, &site.sensors}) {
+    for (const MeterConfig& config : *list) {
+      if (config.source != MeterSource::http) continue;
+      opened.push_back(TRY(PushedFeed::open(config, calendar_, ports_.store)));
+      opened.back()->go_on_from(pushed_);
     }
   }
-  pushed_ = std::move(opened);
-  return {};
+  return opened;
 }
 
-Gateway::PushedMeter Gateway::again_pushed(MeterProgress progress) const {
-  PushedMeter meter{.progress = std::move(progress)};
-  const auto known =
-      std::ranges::find(pushed_, meter.progress.stored.number,
-                        [](const PushedMeter& one) { return one.progress.stored.number; });
-  if (known != pushed_.end()) {
-    meter.progress.counters = known->progress.counters;
-    meter.heard_at = known->heard_at;
-    meter.taken_at = known->taken_at;
+void Gateway::gather_feeds() {
+  feeds_.clear();
+  for (const auto& bus : buses_) {
+    for (const auto& feed : bus->feeds()) feeds_.push_back(feed.get());
   }
-  return meter;
+  for (const auto& feed : mqtt_) feeds_.push_back(feed.get());
+  for (const auto& feed : pushed_) feeds_.push_back(feed.get());
 }
 
 void Gateway::watch_meters_of(const SiteConfig& site) {
-  // What an earlier process told of, newest first; a store that cannot be read says so itself.
+  // What an earlier process reported, newest first; a store that cannot be read says so itself.
   const auto events = ports_.store.events(kEventsLookedAt);
   std::map<std::string, MeterWatch> watches;
   for (const MeterConfig& config : site.meters) {
@@ -158,10 +141,9 @@ void Gateway::watch_meters_of(const SiteConfig& site) {
       watches.emplace(id, known->second);
       continue;
     }
-    const auto pushed = std::ranges::find(
-        pushed_, id, [](const PushedMeter& one) { return one.progress.stored.meter.id; });
+    const auto pushed = std::ranges::find(pushed_, id, [](const auto& one) { return one->id(); });
     const auto known_until =
-        pushed == pushed_.end() ? std::nullopt : pushed->progress.known_until();
+        pushed == pushed_.end() ? std::nullopt : (*pushed)->progress().front().known_until();
     watches.emplace(
         id, MeterWatch{id, silence_max, known_until, events && was_reported_silent(*events, id)});
   }
@@ -198,20 +180,19 @@ Result<void> Gateway::take_over_all(Store& memory, const std::function<void()>& 
         *number, "energy",
         [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
     if (!read) return read;
-    LiveMeter* const meter = find_meter(progress->stored.number);
-    const auto taken = meter != nullptr && !samples.empty()
-                           ? take_over_samples(*meter, samples)
-                           : take_over_intervals(*progress, memory, *number);
+    const auto taken = samples.empty()
+                           ? take_over_intervals(*progress, memory, *number)
+                           : take_over_samples(*find_feed(progress->stored.number), samples);
     if (!taken) return taken;
   }
   return committer_.flush();
 }
 
-Result<void> Gateway::take_over_samples(LiveMeter& meter,
+Result<void> Gateway::take_over_samples(MeterFeed& feed,
                                         std::span<const metering::RegisterSample> samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    StoreBatch batch = std::get<MeterTrack>(meter.track).take_kept(samples[i]);
-    meter.progress.front().mark_late(batch, calendar_);
+    StoreBatch batch = feed.take_kept(samples[i]);
+    feed.progress().front().mark_late(batch, calendar_);
     committer_.add(std::move(batch));
     if ((i + 1) % kSamplesAtATime != 0) continue;
     if (auto flushed = committer_.flush(); !flushed) return flushed;
@@ -236,22 +217,23 @@ Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory
 void Gateway::start() {
   watch_clock(ports_.loop.now());
   for (const auto& bus : buses_) start(*bus);
-  for (LiveMeter& meter : mqtt_meters_) note_doubt(meter);
+  for (const auto& feed : mqtt_) note_doubt(*feed);
   close_months_every_hour();
   evaluate_meters_every_minute();
 }
 
 void Gateway::start(LiveBus& bus) {
-  bus.start(ports_of(bus), [this](LiveMeter& meter, const PolledRead& read) { take(meter, read); });
-  for (LiveMeter& meter : bus.meters()) note_doubt(meter);
+  bus.start(ports_of(bus), [this](MeterFeed& feed, const PolledRead& read) { take(feed, read); });
+  for (const auto& feed : bus.feeds()) note_doubt(*feed);
 }
 
-void Gateway::note_doubt(LiveMeter& meter) {
-  if (meter.doubt.empty()) return;
-  note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", meter.id,
+void Gateway::note_doubt(MeterFeed& feed) {
+  const std::string doubt = feed.take_doubt();
+  if (doubt.empty()) return;
+  note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", feed.id(),
         fmt::format("meter '{}': {}; its counter starts again from here, and the energy since "
                     "the last interval is unknown",
-                    meter.id, std::exchange(meter.doubt, {}))});
+                    feed.id(), doubt)});
 }
 
 LiveBus::Ports Gateway::ports_of(const LiveBus& bus) const {
@@ -276,18 +258,22 @@ Result<void> Gateway::reload(const SiteConfig& site) {
       buses_.begin(), buses_.end(), [&](const auto& bus) { return bus->is_described_by(site); });
   const std::span kept{buses_.begin(), changed};
   auto opened = TRY(open_buses(site, kept));
-  auto mqtt_meter = TRY(open_mqtt_meters(site));
-  if (auto pushed = open_pushed(site); !pushed) return pushed;
-  mqtt_meters_ = std::move(mqtt_meter);
-  for (LiveMeter& meter : mqtt_meters_) note_doubt(meter);
+  auto mqtt = TRY(open_mqtt(site));
+  auto pushed = TRY(open_pushed(site));
+  feeds_.clear();
+  mqtt_ = std::move(mqtt);
+  pushed_ = std::move(pushed);
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
-  begin_buses_anew();                   // those that are kept
+  gather_feeds();
+  for (const auto& feed : mqtt_) note_doubt(*feed);
+  begin_buses_anew();  // those that are kept
   // Held reads were planned with the old descriptions, which may have changed.
-  std::erase_if(held_, [&](const HeldRead& held) { return find_meter(held.meter) == nullptr; });
+  std::erase_if(held_, [&](const HeldRead& held) { return find_feed(held.meter) == nullptr; });
   for (auto& bus : opened) {
     start(*bus);
     buses_.push_back(std::move(bus));
   }
+  gather_feeds();
   watch_meters_of(site);
   watch_sensors_of(site);
   keeper_.set_options(site.closing);
@@ -296,39 +282,28 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   return {};
 }
 
-LiveMeter* Gateway::find_meter(std::uint32_t number) {
+MeterFeed* Gateway::find_feed(std::uint32_t number) {
   const auto is_it = [&](const MeterProgress& one) { return one.stored.number == number; };
-  for (const auto& bus : buses_) {
-    for (LiveMeter& meter : bus->meters()) {
-      if (std::ranges::any_of(meter.progress, is_it)) return &meter;
-    }
-  }
-  for (LiveMeter& meter : mqtt_meters_) {
-    if (std::ranges::any_of(meter.progress, is_it)) return &meter;
-  }
-  return nullptr;
+  const auto feed = std::ranges::find_if(
+      feeds_, [&](MeterFeed* one) { return std::ranges::any_of(one->progress(), is_it); });
+  return feed == feeds_.end() ? nullptr : *feed;
 }
 
 std::vector<MeterProgress*> Gateway::all_progress() {
   std::vector<MeterProgress*> all;
-  for (const auto& bus : buses_) {
-    for (LiveMeter& meter : bus->meters()) {
-      for (MeterProgress& progress : meter.progress) all.push_back(&progress);
-    }
+  for (MeterFeed* const feed : feeds_) {
+    for (MeterProgress& progress : feed->progress()) all.push_back(&progress);
   }
-  for (LiveMeter& meter : mqtt_meters_) all.push_back(&meter.progress.front());
-  for (PushedMeter& meter : pushed_) all.push_back(&meter.progress);
   return all;
 }
 
 MeterProgress* Gateway::find_progress(std::uint32_t number) {
-  if (LiveMeter* const meter = find_meter(number)) {
-    return &*std::ranges::find(meter->progress, number,
-                               [](const MeterProgress& one) { return one.stored.number; });
+  for (MeterFeed* const feed : feeds_) {
+    for (MeterProgress& progress : feed->progress()) {
+      if (progress.stored.number == number) return &progress;
+    }
   }
-  const auto pushed = std::ranges::find(
-      pushed_, number, [](const PushedMeter& one) { return one.progress.stored.number; });
-  return pushed == pushed_.end() ? nullptr : &pushed->progress;
+  return nullptr;
 }
 
 /// Stamps are good from the first plausible time on, until the clock is set again.
@@ -345,10 +320,7 @@ void Gateway::watch_clock(const Moment& now) {
     return;
   }
   if (moved <= kClockWasSet && -moved <= kClockWasSet) return;
-  for (const auto& bus : buses_) {
-    for (LiveMeter& meter : bus->meters()) meter.clock_was_set();
-  }
-  for (LiveMeter& meter : mqtt_meters_) meter.clock_was_set();
+  for (MeterFeed* const feed : feeds_) feed->clock_was_set();
   for (auto& [meter, watch] : meter_watches_) watch.clock_was_set();
   note({now.instant(), Severity::warning, "clock_set", "",
         fmt::format(
@@ -360,8 +332,8 @@ void Gateway::watch_clock(const Moment& now) {
 void Gateway::release_held(const Moment& now) {
   for (const HeldRead& held : std::exchange(held_, {})) {
     const auto wall = now.wall - (now.monotonic - held.read.at.monotonic);
-    LiveMeter* const meter = find_meter(held.meter);
-    if (meter != nullptr) take_at(*meter, held.read, std::chrono::floor<seconds>(wall));
+    MeterFeed* const feed = find_feed(held.meter);
+    if (feed != nullptr) take_at(*feed, held.read, std::chrono::floor<seconds>(wall));
   }
 }
 
@@ -370,77 +342,56 @@ void Gateway::submit(StoreBatch batch) {
   committer_.add(std::move(batch));
 }
 
-void Gateway::take(LiveMeter& meter, const PolledRead& read) {
+void Gateway::take(MeterFeed& feed, const PolledRead& read) {
   watch_clock(read.at);
   if (clock_ok_) {
-    take_at(meter, read, read.at.instant());
+    take_at(feed, read, read.at.instant());
     return;
   }
   if (held_.size() >= kHeldMax) held_.pop_front();
-  held_.push_back({meter.progress.front().stored.number, read});
+  held_.push_back({feed.progress().front().stored.number, read});
 }
 
-void Gateway::take_at(LiveMeter& meter, const PolledRead& read, Instant at) {
-  StoreBatch batch = meter.take(read, at);
-  meter.progress.front().mark_late(batch, calendar_);
+void Gateway::take_at(MeterFeed& feed, const PolledRead& read, Instant at) {
+  StoreBatch batch = feed.take(read, at);
+  feed.progress().front().mark_late(batch, calendar_);
   submit(std::move(batch));
 }
 
 Result<bool> Gateway::accept_mqtt(const MeterValue& value) {
-  const auto mqtt_meter = std::ranges::find(mqtt_meters_, value.meter, &LiveMeter::id);
-  const auto is_it = [&](const modbus::PlannedRead& read) {
-    const modbus::RegisterMap& map = mqtt_meter->config.map;
-    const std::string field = metered_fields(map)[read.fields.front()].name;
-    return value.is_counter ? field == map.energy.front() : map.power == field;
-  };
-  const auto read = mqtt_meter == mqtt_meters_.end()
-                        ? std::vector<modbus::PlannedRead>::iterator{}
-                        : std::ranges::find_if(mqtt_meter->reads, is_it);
-  if (mqtt_meter == mqtt_meters_.end() || read == mqtt_meter->reads.end()) {
-    return failure(ErrorCode::not_found,
-                   fmt::format("no such value of meter '{}' is told", value.meter));
-  }
+  const auto feed =
+      std::ranges::find(mqtt_, value.meter, [](const auto& one) { return one->id(); });
   const Moment now = ports_.loop.now();
-  watch_clock(now);
-  const Instant at = value.measured.value_or(now.instant());
-  const MeterTrack& track = std::get<MeterTrack>(mqtt_meter->track);
-  const bool makes_intervals = value.is_counter || mqtt_meter->config.map.energy.empty();
-  const bool is_late = makes_intervals ? at <= track.last_sample().value_or(Instant::min())
-                                       : at < track.live().read_at.value_or(Instant::min());
-  if (value.measured && is_late) return false;
-  PolledRead polled{.order = {.unit = 0,
-                              .read = static_cast<std::size_t>(read - mqtt_meter->reads.begin()),
-                              .request = {},
-                              .timeout = {},
-                              .due = value.measured ? WallTime{at} : now.wall,
-                              .is_probe = false},
-                    .result = modbus::float64_words(value.value),
-                    .lateness = {},
-                    .duration = {},
-                    .at = now};
-  if (value.measured) {
-    take_at(*mqtt_meter, polled, at);
-  } else {
-    take(*mqtt_meter, polled);
+  const auto read = feed == mqtt_.end() ? std::nullopt : (*feed)->read_of(value, now);
+  if (!read) {
+    return failure(ErrorCode::not_found, fmt::format("meter '{}' has no such value", value.meter));
   }
+  watch_clock(now);
+  if (!value.measured) {
+    take(**feed, *read);
+    return true;
+  }
+  if ((*feed)->is_late(value, *value.measured)) return false;
+  take_at(**feed, *read, *value.measured);
   return true;
 }
 
 Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
                                           std::vector<metering::Reading> readings,
                                           const std::optional<Correction>& correction) {
-  const auto pushed = std::ranges::find(
-      pushed_, meter, [](const PushedMeter& one) { return one.progress.stored.meter.id; });
-  if (pushed == pushed_.end()) {
+  const auto feed =
+      std::ranges::find_if(pushed_, [&](const auto& one) { return one->find(meter) != nullptr; });
+  if (feed == pushed_.end()) {
     return failure(ErrorCode::not_found,
                    "this daemon does not accept readings of a meter '" + meter + "'");
   }
+  const MeterProgress& progress = *(*feed)->find(meter);
   StoreBatch batch;
   for (metering::Reading& reading : readings) {
-    reading.meter = pushed->progress.stored.number;
+    reading.meter = progress.stored.number;
     batch.intervals.push_back({.reading = reading, .supersedes = correction.has_value()});
   }
-  pushed->progress.mark_late(batch, calendar_);
+  progress.mark_late(batch, calendar_);
   watch_clock(ports_.loop.now());
   const Instant now = ports_.loop.now().instant();
   auto counts = commit_pushed(batch, correction, now);
@@ -449,8 +400,7 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
     return counts;
   }
   if (!committer_.health().is_degraded) report_refusal("");
-  pushed->heard_at = now;
-  if (counts->taken > 0) pushed->taken_at = now;
+  (*feed)->note_heard(progress, now, counts->taken > 0);
   note_committed(batch, *counts);
   report_pushed(meter, *counts, correction, now);
   return counts;
@@ -494,7 +444,7 @@ void Gateway::report_pushed(const std::string& meter, const CommitCounts& counts
   }
 }
 
-/// A disk that refuses every other commit is told of once an hour.
+/// A disk that refuses every other commit is reported once an hour.
 void Gateway::report_refusal(const std::string& why) {
   const Moment now = ports_.loop.now();
   if (!why.empty()) {
@@ -597,22 +547,10 @@ void Gateway::evaluate_meters() {
   watch_clock(ports_.loop.now());
   if (!clock_ok_) return;
   const Instant now = ports_.loop.now().instant();
-  const auto evaluate = [&](const std::string& meter, std::optional<Instant> heard_at) {
-    const auto watch = meter_watches_.find(meter);
-    if (watch == meter_watches_.end()) return;
-    if (auto event = watch->second.evaluate(heard_at, now)) note(std::move(*event));
-  };
-  for (const auto& bus : buses_) {
-    for (const LiveMeter& meter : bus->meters()) {
-      const auto* const track = std::get_if<MeterTrack>(&meter.track);
-      if (track != nullptr) evaluate(meter.id, track->live().measured_at);
-    }
-  }
-  for (const LiveMeter& meter : mqtt_meters_) {
-    evaluate(meter.id, std::get<MeterTrack>(meter.track).live().measured_at);
-  }
-  for (const PushedMeter& meter : pushed_) {
-    if (!meter.progress.channel) evaluate(meter.progress.stored.meter.id, meter.taken_at);
+  for (const MeterFeed* const feed : feeds_) {
+    const auto watch = meter_watches_.find(feed->id());
+    if (feed->is_sensor() || watch == meter_watches_.end()) continue;
+    if (auto event = watch->second.evaluate(feed->measured_at(), now)) note(std::move(*event));
   }
 }
 
@@ -638,109 +576,30 @@ GatewayStatus Gateway::status() const {
     if (runner == nullptr) continue;
     const BusCounters& counters = runner->counters();
     status.buses.push_back({bus->config().name, counters.duration, counters.lateness});
-    for (std::size_t unit = 0; unit < bus->meters().size(); ++unit) {
-      status.meters.push_back(status_of(*bus, unit, *runner));
-    }
   }
-  for (const LiveMeter& meter : mqtt_meters_) status.meters.push_back(status_of(meter));
-  for (const PushedMeter& meter : pushed_) {
-    if (!meter.progress.channel) status.meters.push_back(status_of(meter));
-  }
-  for (const auto& [sensor, watch] : watches_) {
-    if (!watch.is_polled()) status.meters.push_back(status_of_pushed_sensor(sensor));
-  }
+  for (const MeterFeed* const feed : feeds_) status.meters.push_back(status_of(*feed));
   return status;
 }
 
 std::optional<MeterStatus> Gateway::meter_status(std::string_view id) const {
-  for (const auto& bus : buses_) {
-    const BusRunner* const runner = bus->runner();
-    if (runner == nullptr) continue;
-    const auto meters = std::span{bus->meters()};
-    const auto found = std::ranges::find(
-        meters, id, [](const LiveMeter& one) { return std::string_view{one.id}; });
-    if (found != meters.end()) {
-      return status_of(*bus, static_cast<std::size_t>(found - meters.begin()), *runner);
-    }
-  }
-  const auto mqtt_meter = std::ranges::find(
-      mqtt_meters_, id, [](const LiveMeter& one) { return std::string_view{one.id}; });
-  if (mqtt_meter != mqtt_meters_.end()) return status_of(*mqtt_meter);
-  const auto watch = watches_.find(std::string{id});
-  if (watch != watches_.end() && !watch->second.is_polled()) {
-    return status_of_pushed_sensor(watch->first);
-  }
-  const auto pushed = std::ranges::find(pushed_, id, [](const PushedMeter& one) {
-    return std::string_view{one.progress.stored.meter.id};
-  });
-  if (pushed == pushed_.end()) return std::nullopt;
-  return status_of(*pushed);
+  const auto feed = std::ranges::find(
+      feeds_, id, [](const MeterFeed* one) { return std::string_view{one->id()}; });
+  return feed == feeds_.end() ? std::nullopt : std::optional{status_of(**feed)};
 }
 
-MeterStatus Gateway::status_of(const LiveBus& bus, std::size_t unit,
-                               const BusRunner& runner) const {
-  const LiveMeter& meter = bus.meters()[unit];
-  MeterStatus status{.id = meter.id,
-                     .poll = PollStatus{.bus = bus.config().name,
-                                        .state = runner.poller().state(unit),
-                                        .skipped = runner.poller().skipped(unit),
-                                        .requests = runner.counters().requests[unit],
-                                        .refused = meter.refused()},
-                     .live = {},
-                     .last_interval = {},
-                     .counters = {}};
-  if (const auto* const sensor = std::get_if<WeatherTrack>(&meter.track)) {
-    status.live.read_at = sensor->read_at();
+MeterStatus Gateway::status_of(const MeterFeed& feed) const {
+  MeterStatus status = feed.status(ports_.loop.now().instant());
+  if (feed.is_sensor()) {
     status.open_month_coverage = kAbsent;
-    for (const MeterProgress& progress : meter.progress) {
-      add_quantity(status, progress, sensor->now(progress.stored.number));
+    for (const MeterProgress& progress : feed.progress()) {
+      add_quantity(status, progress, feed.now(progress.stored.number));
     }
     return status;
   }
-  const MeterProgress& progress = meter.progress.front();
-  status.live = std::get<MeterTrack>(meter.track).live();
+  const MeterProgress& progress = feed.progress().front();
   status.last_interval = progress.last_interval;
   status.counters = progress.counters;
   status.open_month_coverage = coverage_of(progress);
-  return status;
-}
-
-MeterStatus Gateway::status_of(const LiveMeter& mqtt_meter) const {
-  LiveValues live = std::get<MeterTrack>(mqtt_meter.track).live();
-  // Nobody says that a power has gone out of date.
-  const bool is_current =
-      live.read_at && ports_.loop.now().instant() - *live.read_at <= 2 * mqtt_meter.config.poll;
-  if (!is_current) live.power_kW.reset();
-  const MeterProgress& progress = mqtt_meter.progress.front();
-  return {.id = mqtt_meter.id,
-          .poll = std::nullopt,
-          .live = live,
-          .last_interval = progress.last_interval,
-          .counters = progress.counters,
-          .open_month_coverage = coverage_of(progress)};
-}
-
-MeterStatus Gateway::status_of(const PushedMeter& meter) const {
-  return {.id = meter.progress.stored.meter.id,
-          .poll = std::nullopt,
-          .live = {.power_kW = {}, .register_kWh = {}, .read_at = meter.heard_at},
-          .last_interval = meter.progress.last_interval,
-          .counters = meter.progress.counters,
-          .open_month_coverage = coverage_of(meter.progress)};
-}
-
-MeterStatus Gateway::status_of_pushed_sensor(const std::string& sensor) const {
-  MeterStatus status{.id = sensor,
-                     .poll = std::nullopt,
-                     .live = {},
-                     .last_interval = {},
-                     .counters = {},
-                     .open_month_coverage = kAbsent};
-  for (const PushedMeter& meter : pushed_) {
-    if (!meter.progress.channel || meter.progress.channel->sensor != sensor) continue;
-    status.live.read_at = std::max(status.live.read_at, meter.heard_at);
-    add_quantity(status, meter.progress, {});
-  }
   return status;
 }
 

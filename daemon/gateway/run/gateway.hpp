@@ -20,13 +20,15 @@
 #include "adapters/ports/bus.hpp"
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/store.hpp"
+#include "daemon/gateway/feed/live_bus.hpp"
+#include "daemon/gateway/feed/mqtt_feed.hpp"
+#include "daemon/gateway/feed/pushed_feed.hpp"
 #include "daemon/gateway/ingest/committer.hpp"
 #include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
 #include "daemon/gateway/ingest/meter_message.hpp"
 #include "daemon/gateway/ingest/meter_watch.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
-#include "daemon/gateway/run/live_bus.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
@@ -111,13 +113,6 @@ class Gateway {
   [[nodiscard]] std::optional<MeterStatus> meter_status(std::string_view id) const;
 
  private:
-  /// A meter with source = "http", or a quantity of such a sensor, whose readings arrive by HTTP.
-  struct PushedMeter {
-    MeterProgress progress;
-    std::optional<metering::Instant> heard_at = {};  ///< Since the process started, as the next.
-    std::optional<metering::Instant> taken_at = {};  ///< It sent something new.
-  };
-
   /// A read from before the clock was right.
   struct HeldRead {
     std::uint32_t meter;  ///< Its number, since a reload may replace the meter meanwhile.
@@ -132,30 +127,31 @@ class Gateway {
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
   void start(LiveBus& bus);
   [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
-  /// Opens the meters with source = "mqtt"; those that are described as before go on.
-  [[nodiscard]] Result<std::vector<LiveMeter>> open_mqtt_meters(const SiteConfig& site);
-  void note_doubt(LiveMeter& meter);
+  /// Opens the meters with source = "mqtt".
+  [[nodiscard]] Result<std::vector<std::unique_ptr<MqttFeed>>> open_mqtt(const SiteConfig& site);
   /// Opens the pushed meters and weather sensors of `site`; those already open keep their state.
-  Result<void> open_pushed(const SiteConfig& site);
-  [[nodiscard]] PushedMeter again_pushed(MeterProgress progress) const;
+  [[nodiscard]] Result<std::vector<std::unique_ptr<PushedFeed>>> open_pushed(
+      const SiteConfig& site);
+  void gather_feeds();
+  void note_doubt(MeterFeed& feed);
   /// Meters and weather sensors that stay are watched further.
   void watch_meters_of(const SiteConfig& site);
   void watch_sensors_of(const SiteConfig& site);
   void evaluate_meters_every_minute();
   void evaluate_meters();
   void evaluate_sensors();
-  [[nodiscard]] LiveMeter* find_meter(std::uint32_t number);
+  [[nodiscard]] MeterFeed* find_feed(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
   [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
   [[nodiscard]] Result<void> take_over_all(Store& memory, const std::function<void()>& on_progress);
-  [[nodiscard]] Result<void> take_over_samples(LiveMeter& meter,
+  [[nodiscard]] Result<void> take_over_samples(MeterFeed& feed,
                                                std::span<const metering::RegisterSample> samples);
   [[nodiscard]] Result<void> take_over_intervals(MeterProgress& progress, Store& memory,
                                                  std::uint32_t number);
   /// Passes a batch to the committer.
   void submit(StoreBatch batch);
-  void take(LiveMeter& meter, const PolledRead& read);
-  void take_at(LiveMeter& meter, const PolledRead& read, metering::Instant at);
+  void take(MeterFeed& feed, const PolledRead& read);
+  void take_at(MeterFeed& feed, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);
   void release_held(const Moment& now);
   /// Commits the batch and, if it changes anything, its edit at once.
@@ -167,11 +163,7 @@ class Gateway {
   /// @param why  Of the store; empty: it accepts again.
   void report_refusal(const std::string& why);
   void note_committed(const StoreBatch& batch, const CommitCounts& counts);
-  [[nodiscard]] MeterStatus status_of(const LiveBus& bus, std::size_t unit,
-                                      const BusRunner& runner) const;
-  [[nodiscard]] MeterStatus status_of(const LiveMeter& mqtt_meter) const;
-  [[nodiscard]] MeterStatus status_of(const PushedMeter& meter) const;
-  [[nodiscard]] MeterStatus status_of_pushed_sensor(const std::string& sensor) const;
+  [[nodiscard]] MeterStatus status_of(const MeterFeed& feed) const;
   void add_quantity(MeterStatus& status, const MeterProgress& progress,
                     std::optional<double> now) const;
   [[nodiscard]] double coverage_of(const MeterProgress& progress) const;
@@ -188,8 +180,9 @@ class Gateway {
   MonthKeeper keeper_;
   std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
   std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
-  std::vector<LiveMeter> mqtt_meters_;  ///< With source = "mqtt".
-  std::vector<PushedMeter> pushed_;
+  std::vector<std::unique_ptr<MqttFeed>> mqtt_;
+  std::vector<std::unique_ptr<PushedFeed>> pushed_;
+  std::vector<MeterFeed*> feeds_;                    ///< All of them: polled, of a broker, pushed.
   std::map<std::string, MeterWatch> meter_watches_;  ///< By id.
   std::map<std::string, SensorWatch> watches_;       ///< By id of the weather sensor.
   bool clock_ok_ = false;

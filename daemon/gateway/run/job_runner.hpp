@@ -32,7 +32,7 @@ struct JobOutcome {
 };
 
 /// Runs a job on the worker. @param now  When it began.
-/// @return the outcome; cancelled when it was told to stop; or why it failed.
+/// @return the outcome; cancelled when a stop was requested; or why it failed.
 using DoJob =
     std::function<Result<JobOutcome>(const StoredJob& job, metering::Instant now, JobWatch& watch)>;
 

@@ -31,28 +31,24 @@ Result<std::vector<ExpectedMeter>> expect_safely(const ExpectLoads& expect,
 }  // namespace
 
 LoadWatch::LoadWatch(Loop& loop, Worker& worker, ExpectLoads expect, std::function<bool()> is_busy)
-    : loop_(loop), worker_(worker), expect_(std::move(expect)), is_busy_(std::move(is_busy)) {}
+    : loop_(loop),
+      worker_(worker),
+      expect_(std::move(expect)),
+      is_busy_(std::move(is_busy)),
+      wakeup_(loop, [this] { ask(); }) {}
 
-void LoadWatch::start() { schedule(std::chrono::milliseconds{0}); }
+void LoadWatch::start() { wakeup_.after(std::chrono::milliseconds{0}); }
 
 void LoadWatch::set_expect(ExpectLoads expect) {
   expect_ = std::move(expect);
   latest_.clear();
   ++site_files_;
-  schedule(std::chrono::milliseconds{0});
-}
-
-void LoadWatch::schedule(std::chrono::milliseconds wait) {
-  const std::chrono::milliseconds due = loop_.now().monotonic + wait;
-  due_ = due;
-  loop_.after(wait, alive_.guard([this, due] {
-    if (due_ == due) ask();
-  }));
+  wakeup_.after(std::chrono::milliseconds{0});
 }
 
 void LoadWatch::ask() {
-  if (is_asking_ || is_busy_()) return schedule(kAskAgain);
-  schedule(kAskEvery);
+  if (is_asking_ || is_busy_()) return wakeup_.after(kAskAgain);
+  wakeup_.after(kAskEvery);
   is_asking_ = true;
   const metering::Instant now = loop_.now().instant();
   const metering::TimeSpan span{std::chrono::floor<std::chrono::hours>(now - kShownFor), now};

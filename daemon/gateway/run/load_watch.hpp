@@ -3,12 +3,12 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "adapters/ports/alive.hpp"
 #include "adapters/ports/loop.hpp"
+#include "adapters/ports/wakeup.hpp"
 #include "adapters/ports/worker.hpp"
 #include "core/result.hpp"
 #include "daemon/site/model/expected_load.hpp"
@@ -36,7 +36,6 @@ class LoadWatch {
   [[nodiscard]] const std::vector<ExpectedMeter>& latest() const { return latest_; }
 
  private:
-  void schedule(std::chrono::milliseconds wait);
   void ask();
   void take(Result<std::vector<ExpectedMeter>> expected);
 
@@ -48,7 +47,7 @@ class LoadWatch {
   std::string failure_;  ///< The last one logged.
   bool is_asking_ = false;
   int site_files_ = 0;  ///< So far: an answer for an earlier one is dropped.
-  std::optional<std::chrono::milliseconds> due_;  ///< Monotonic.
+  Wakeup wakeup_;
   Alive alive_;
 };
 

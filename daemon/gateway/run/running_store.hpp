@@ -9,7 +9,7 @@
 #include <string>
 
 #include "adapters/stores/open.hpp"
-#include "adapters/system/file_lock.hpp"
+#include "adapters/system/files/file_lock.hpp"
 #include "daemon/site/config/service/store_config.hpp"
 
 namespace recald::daemon {

@@ -13,7 +13,7 @@ struct ServiceOptions {
   std::optional<metering::TrialClock> trial;  ///< Absent: real time.
 };
 
-/// Runs until it is told to end (SIGTERM or SIGINT), then commits what is pending. SIGHUP reads the
+/// Runs until SIGTERM or SIGINT, then commits what is pending. SIGHUP reads the
 /// site file again, SIGUSR1 requests a calibration.
 /// @return nothing, or why it could not start or could not commit at its end.
 [[nodiscard]] Result<void> run_service(OpenSite site, const ServiceOptions& options);

@@ -9,7 +9,11 @@
 
 #include "adapters/models/model_store.hpp"
 #include "adapters/results/job_result_json.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
+#include "adapters/views/diagnosis/diagnosis_files.hpp"
+#include "adapters/views/drift/drift_json.hpp"
+#include "adapters/views/drift/drift_report.hpp"
+#include "adapters/views/drift/drift_summary.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/site/calibrate/calibration_on_design.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
@@ -20,11 +24,8 @@
 #include "daemon/site/replay/stored_readings.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/calibration_folder.hpp"
-#include "daemon/site/results/diagnosis_files.hpp"
 #include "daemon/site/results/diagnosis_folder.hpp"
-#include "daemon/site/results/drift_json.hpp"
-#include "daemon/site/results/drift_report.hpp"
-#include "daemon/site/results/drift_summary.hpp"
+#include "daemon/site/results/report_parts.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -163,8 +164,8 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
   modelled.facts.model_version = version_name(version, modelled.facts.model_version);
   modelled.facts.seed = context.seed;
   auto drift = TRY(follow_site(modelled, options, version.effects, context));
-  TRY(write_drift(modelled.site.config, drift, modelled.facts, metering::to_string(now),
-                  drift_json(drift, modelled.facts), folder));
+  TRY(views::write_drift(site_line_of(modelled.site.config), drift, modelled.facts, metering::to_string(now),
+                         views::drift_json(drift, modelled.facts), folder));
   outcome.forecasts = forecasts_of(drift, modelled.facts, now);
   SiteConfig hourly = modelled.site.config;
   const bool can_be_diagnosed = choose_model(hourly, ModelKind::hourly).has_value();
@@ -173,7 +174,7 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
   if (asks_for_a_name(drift) && can_be_diagnosed && is_of_drawings) {
     outcome.next = JobKind::diagnosis;
   }
-  return summary_of(drift);
+  return views::summary_of(drift);
 }
 
 Result<JobOutcome> calibrate(const OpenSite& site, const CalibrateOptions& options,
@@ -275,10 +276,10 @@ Result<JobOutcome> diagnose(OpenSite site, const StoredJob& job, metering::Insta
                         {.rules = {}, .prior_none = modelled.site.config.prior_none, .seed = kSeed},
                         [&](const char* what, double share) { return watch.say(what, share); }));
   modelled.facts.seed = kSeed;
-  JobOutcome outcome{
-      .accepted = true,
-      .folder = folder.string(),
-      .result = {.document = diagnosis_json(done.diagnosis, problem, modelled.facts, done.others)}};
+  JobOutcome outcome{.accepted = true,
+                     .folder = folder.string(),
+                     .result = {.document = views::diagnosis_json(done.diagnosis, problem,
+                                                                  modelled.facts, done.others)}};
   TRY(system::make_folder(folder));
   TRY(write_diagnosis(done, modelled, problem, outcome.result.document, metering::to_string(now),
                       folder));

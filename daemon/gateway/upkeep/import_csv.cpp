@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "adapters/system/regular_file.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/regular_file.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "adapters/system/time_zone_release.hpp"
 
 namespace recald::daemon {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "adapters/system/reserved_space.hpp"
+#include "adapters/system/files/reserved_space.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
 
 namespace recald::daemon {

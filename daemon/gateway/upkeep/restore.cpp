@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "adapters/stores/open.hpp"
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 #include "core/text/nearest.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/gateway/ingest/plausible_time.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"

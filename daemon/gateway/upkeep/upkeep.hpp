@@ -13,7 +13,7 @@
 #include "adapters/ports/alive.hpp"
 #include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
-#include "adapters/system/reserved_space.hpp"
+#include "adapters/system/files/reserved_space.hpp"
 #include "core/metering/civil_time.hpp"
 #include "daemon/site/config/service/store_config.hpp"
 

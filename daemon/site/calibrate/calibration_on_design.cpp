@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "core/absent.hpp"
 #include "core/display/warning.hpp"
 #include "daemon/site/calibrate/design_origin.hpp"

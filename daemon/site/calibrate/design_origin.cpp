@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/site/model/active_effects.hpp"
 
 namespace recald::daemon {
@@ -50,7 +50,7 @@ std::vector<std::string> parameter_names(const std::vector<AddedEffect>& effects
 bool teaches(const AddedEffect& effect, const doe::DesignFolder& design) {
   return std::ranges::all_of(design.months, [&](const doe::DesignMonth& month) {
     const auto calendar_month = metering::parse_month(month.text());
-    return calendar_month && may_teach(effect, *calendar_month);
+    return calendar_month && may_learn_from(effect, *calendar_month);
   });
 }
 

@@ -12,7 +12,7 @@
 namespace recald::daemon {
 namespace {
 
-std::string effects_text(const ModelEffects& effects) {
+std::string effects_text(const diagnosis::ModelEffects& effects) {
   std::vector<std::string> titles;
   for (const diagnosis::AddedEffect& effect : effects.added) {
     titles.push_back(effect.meter.empty() ? fmt::format("'{}'", effect.title)
@@ -26,8 +26,9 @@ std::string effects_text(const ModelEffects& effects) {
 std::vector<bool> teaching_months(const SiteCalibration& site, std::size_t months) {
   std::vector<bool> teaches(months);
   for (std::size_t i = 0; i < months; ++i) {
-    teaches[i] = std::ranges::all_of(
-        site.effects->added, [&](const auto& effect) { return may_teach(effect, site.months[i]); });
+    teaches[i] = std::ranges::all_of(site.effects->added, [&](const auto& effect) {
+      return may_learn_from(effect, site.months[i]);
+    });
   }
   return teaches;
 }

@@ -48,7 +48,7 @@ std::map<Day, double> daily_dry_bulbs_C(const metering::LocalCalendar& calendar,
 std::map<Day, double> daily_energies_kWh(const MeterRecord& record) {
   std::map<Day, std::pair<double, int>> sums;
   for (const auto& [month, hours] : record.hours) {
-    for (const profile::HourlyLoad& hour : hours) {
+    for (const model::HourlyLoad& hour : hours) {
       if (std::isnan(hour.mean_kW) || hour.suspect) continue;
       auto& [sum, count] = sums[hour.date];
       sum += hour.mean_kW;

@@ -127,14 +127,14 @@ Result<void> take_effects(const SiteConfig& site, const metering::LocalCalendar&
                           std::vector<diagnosis::AddedEffect> added, SiteCalibration& result) {
   if (added.empty()) return {};
   auto problem = TRY(make_site_problem(site, calendar, recording, weather));
-  auto effects = TRY(make_model_effects(
+  auto effects = TRY(diagnosis::make_model_effects(
       std::move(added), std::make_shared<const diagnosis::SiteProblem>(std::move(problem))));
   for (std::size_t j = 0; j < effects.parameters.size(); ++j) {
     Parameter& taken = result.parameters.emplace_back(effects.parameters[j]);
     taken.definition = &effects.labels[j]->definition;
     taken.label = taken.definition->label;
   }
-  result.effects = std::make_shared<const ModelEffects>(std::move(effects));
+  result.effects = std::make_shared<const diagnosis::ModelEffects>(std::move(effects));
   // Factors of calendar months hold what an effect changes from month to month: it would count
   // twice. The diagnosis went without them too.
   result.profile.loads.month_factor.fill(1.0);
@@ -243,12 +243,12 @@ std::vector<assessment::OutputCalibration> collect_outputs(const SiteConfig& sit
   return outputs;
 }
 
-Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
-                                                     const Recording& recording,
-                                                     const model::epc::Place& place,
-                                                     const std::vector<Month>& months) {
+Result<model::ElectricityProfile> fit_site_profile(const SiteConfig& site,
+                                                   const Recording& recording,
+                                                   const model::epc::Place& place,
+                                                   const std::vector<Month>& months) {
   const auto meter = TRY(electricity_meter(site, recording));
-  const std::vector<profile::HourlyLoad> loads = loads_of(*meter, months);
+  const std::vector<model::HourlyLoad> loads = loads_of(*meter, months);
   // What an own chiller draws is not told from lights and plugs by months, only by hours.
   if (is_hourly(site) || site.building->chiller_cop) {
     return model::hourly::fit_profile_without_plant(loads, *site.building, place, months);
@@ -256,10 +256,10 @@ Result<profile::ElectricityProfile> fit_site_profile(const SiteConfig& site,
   return model::epc::fit_profile_with_fans(loads, *site.building, place, months);
 }
 
-Result<profile::ElectricityProfile> profile_site(const SiteConfig& site,
-                                                 const metering::LocalCalendar& calendar,
-                                                 const Recording& recording,
-                                                 const SiteWeather& weather) {
+Result<model::ElectricityProfile> profile_site(const SiteConfig& site,
+                                               const metering::LocalCalendar& calendar,
+                                               const Recording& recording,
+                                               const SiteWeather& weather) {
   if (!site.building) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("{} has no [building], whose installed lights and plugs split the "

@@ -7,16 +7,16 @@
 #include "adapters/doe/design_folder.hpp"
 #include "core/assessment/assessed_calibration.hpp"
 #include "core/assessment/model_errors.hpp"
+#include "core/diagnosis/model_effects.hpp"
+#include "core/model/electricity_profile.hpp"
 #include "core/model/epc/prepare.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/model/parameter_library.hpp"
-#include "core/profile/electricity_profile.hpp"
 #include "core/result.hpp"
 #include "core/screening/screen.hpp"
 #include "core/weather/monthly_inputs.hpp"
 #include "daemon/site/calibrate/design_metamodel.hpp"
 #include "daemon/site/config/site_config.hpp"
-#include "daemon/site/model/model_effects.hpp"
 #include "daemon/site/model/site_model.hpp"
 #include "daemon/site/model/site_parts.hpp"
 #include "daemon/site/replay/recording.hpp"
@@ -40,12 +40,12 @@ struct CalibratedWith {
 
 struct SiteCalibration : assessment::AssessedCalibration {
   std::vector<metering::Month> months;  ///< Those of `month_names`.
-  profile::ElectricityProfile profile;  ///< Of a model of the site's [building].
+  model::ElectricityProfile profile;    ///< Of a model of the site's [building].
   /// Of a model that a design of experiments stands for: the design, and what was made of it.
   std::shared_ptr<const SiteDesign> design;
   /// Of the version in force; null: the model is that of the drawings. Their parameters stand
   /// behind the others in `parameters`.
-  std::shared_ptr<const ModelEffects> effects;
+  std::shared_ptr<const diagnosis::ModelEffects> effects;
   std::shared_ptr<const CalibratedWith> with;  ///< Null: no model was calibrated.
 };
 
@@ -133,13 +133,13 @@ void take_months(const SiteMonths& months, SiteCalibration& result);
 /// Lights and plugs for the site's kind of model.
 /// @return not_enough_data without an electricity meter; unsupported for a monthly model of a
 ///         building with a chiller of its own.
-[[nodiscard]] Result<profile::ElectricityProfile> fit_site_profile(
+[[nodiscard]] Result<model::ElectricityProfile> fit_site_profile(
     const SiteConfig& site, const Recording& recording, const model::epc::Place& place,
     const std::vector<metering::Month>& months);
 
 /// The electricity profile alone. @return or not_enough_data without a [building]. @pre the site
 /// has a period
-[[nodiscard]] Result<profile::ElectricityProfile> profile_site(
+[[nodiscard]] Result<model::ElectricityProfile> profile_site(
     const SiteConfig& site, const metering::LocalCalendar& calendar, const Recording& recording,
     const SiteWeather& weather);
 

@@ -9,7 +9,7 @@
 #include "adapters/doe/design_writer.hpp"
 #include "adapters/energyplus/energyplus_engine.hpp"
 #include "adapters/ports/engine.hpp"
-#include "adapters/system/file_lock.hpp"
+#include "adapters/system/files/file_lock.hpp"
 #include "core/design/latin_hypercube.hpp"
 #include "core/executor.hpp"
 #include "core/result.hpp"

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 #include "core/text/nearest.hpp"
 #include "core/text/printable.hpp"
 

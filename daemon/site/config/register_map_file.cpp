@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 #include "core/metering/units.hpp"
 #include "core/text/nearest.hpp"
 #include "core/weather/sensor_quantities.hpp"

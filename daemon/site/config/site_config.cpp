@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "adapters/models/versions_folder.hpp"
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 #include "adapters/toml/toml_reader.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/site/config/building_config.hpp"

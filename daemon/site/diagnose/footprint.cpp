@@ -35,7 +35,7 @@ Result<void> require_names_apart(const csv::ReadingsOptions& options, const std:
 
 csv::ReadingsOptions file_options(const SiteConfig& config, const diagnosis::SiteProblem& site) {
   csv::ReadingsOptions options;
-  options.add_unlisted_meters = true;  // to be told of them
+  options.add_unlisted_meters = true;  // so that they are reported
   for (const diagnosis::MeterData& meter : site.meters) {
     const MeterConfig& known = config.meters[*config.meter_index(meter.id)];
     options.meters.push_back({.name = known.name_in_file,
@@ -73,7 +73,7 @@ Result<void> check(const csv::ReadingsReport& report, const csv::ReadingsOptions
   return {};
 }
 
-/// An hour told in part would count what is not told as not moved.
+/// An hour known in part would count what is not known as not moved.
 Result<void> require_whole_hours(const FootprintHours& hours, const diagnosis::SiteProblem& site,
                                  const csv::ReadingsOptions& options, const std::string& name) {
   const auto whole_s = static_cast<double>(kOneHour.count());

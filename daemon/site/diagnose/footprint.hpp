@@ -40,7 +40,7 @@ class FootprintHours {
 /// multipliers and counters are not applied. A meter is not moved in hours without a row.
 /// @return (hours x m) kW; not_found, io_failed or malformed from the file; or
 ///         malformed        a line that cannot be used, repeats an interval or is not in order; a
-///                          blank value; an hour of which only a part is told;
+///                          blank value; an hour of which only a part is known;
 ///         invalid_value    a meter that the model does not have, or two of one name;
 ///         not_enough_data  no row, or none within the site's months.
 [[nodiscard]] Result<Eigen::ArrayXXd> read_footprint(const std::filesystem::path& file,

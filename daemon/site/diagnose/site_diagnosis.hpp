@@ -11,7 +11,7 @@
 
 namespace recald::daemon {
 
-/// All that can be told before the long part, so that nobody waits for a refusal.
+/// All that can be checked before the long part, so that nobody waits for a refusal.
 /// @return unsupported when the model has effects already: a diagnosis starts from the drawings;
 ///         not_enough_data as `require_months`; or the errors of `make_site_problem`.
 /// @pre the site's model is hourly

@@ -4,12 +4,12 @@
 #include <memory>
 #include <utility>
 
+#include "core/diagnosis/model_effects.hpp"
 #include "core/diagnosis/naming/learnt_names.hpp"
 #include "core/diagnosis/naming/signature_evidence.hpp"
 #include "core/diagnosis/naming/signature_names.hpp"
 #include "core/diagnosis/naming/signatures.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
-#include "daemon/site/model/model_effects.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -99,7 +99,7 @@ drift::AskHours ask_hours_of(const ModelledSite& modelled, std::vector<std::stri
         const auto problem = std::make_shared<const SiteProblem>(std::move(*made));
         std::vector<std::shared_ptr<const model::hourly::Alteration>> accepted;
         if (!added.empty()) {
-          const auto effects = make_model_effects(added, problem);
+          const auto effects = diagnosis::make_model_effects(added, problem);
           if (!effects) return std::nullopt;
           accepted = effects->alterations(effects->mean());
         }

@@ -4,7 +4,7 @@
 
 #include "core/assessment/assessed_calibration.hpp"
 #include "core/diagnosis/evidence/site_problem.hpp"
-#include "core/drift/daily/watched_days.hpp"
+#include "core/drift/watch/watched_days.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
 
 namespace recald::daemon {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/drift/daily/daily_reference.hpp"
+#include "core/drift/watch/daily_reference.hpp"
 #include "core/result.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 

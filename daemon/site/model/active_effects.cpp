@@ -24,17 +24,6 @@ Result<std::vector<AddedEffect>> active_effects(const SiteConfig& site) {
   return std::move(version.effects);
 }
 
-bool may_teach(const AddedEffect& effect, metering::Month month) {
-  return std::ranges::all_of(effect.months_used, [&](auto used) { return used < month; });
-}
-
-std::string effect_parameter_name(const AddedEffect& effect,
-                                  const EffectParameterRecord& parameter) {
-  const std::string owner =
-      effect.meter.empty() ? effect.effect : effect.effect + "_" + effect.meter;
-  return owner + "_" + parameter.name;
-}
-
 Result<void> require_in_design(std::span<const AddedEffect> effects,
                                std::span<const Parameter> design) {
   for (const AddedEffect& effect : effects) {

@@ -29,14 +29,6 @@ namespace recald::daemon {
 [[nodiscard]] std::string version_name(const diagnosis::ModelVersion& active,
                                        const std::string& drawings);
 
-/// Whether the effect may learn from the month: the month comes after all that it was learnt from.
-[[nodiscard]] bool may_teach(const diagnosis::AddedEffect& effect, metering::Month month);
-
-/// The name of an effect's parameter among those of a design or a calibration:
-/// "night_setback_missing_share"; with its meter if it has one, "meter_scale_heat_factor".
-[[nodiscard]] std::string effect_parameter_name(const diagnosis::AddedEffect& effect,
-                                                const diagnosis::EffectParameterRecord& parameter);
-
 /// A meta-model only knows the parameters that its design varied.
 /// @return unsupported for the first effect with a parameter that the design lacks.
 [[nodiscard]] Result<void> require_in_design(std::span<const diagnosis::AddedEffect> effects,

@@ -39,9 +39,8 @@ std::vector<Month> months_with_weather(const SiteConfig& site, const SiteWeather
 bool is_read(const MeterRecord& record, Month month) {
   const auto found = record.hours.find(month);
   if (found == record.hours.end()) return false;
-  const auto read = std::ranges::count_if(found->second, [](const profile::HourlyLoad& hour) {
-    return hour.ok_share >= kLeastOkShare;
-  });
+  const auto read = std::ranges::count_if(
+      found->second, [](const model::HourlyLoad& hour) { return hour.ok_share >= kLeastOkShare; });
   return static_cast<double>(read) >= kLeastReadShare * 24.0 * metering::days_in(month);
 }
 
@@ -62,7 +61,7 @@ std::vector<Month> months_read(const SiteConfig& site, const Recording& recordin
 Eigen::ArrayXd hours_of(const MeterRecord& record, const model::Drivers& drivers) {
   std::map<std::pair<metering::Day, int>, double> by_hour;
   for (const auto& [month, hours] : record.hours) {
-    for (const profile::HourlyLoad& hour : hours) {
+    for (const model::HourlyLoad& hour : hours) {
       if (hour.ok_share >= kLeastOkShare) by_hour[{hour.date, hour.hour}] = hour.mean_kW;
     }
   }

@@ -12,7 +12,7 @@
 #include "adapters/energyplus/read_model.hpp"
 #include "adapters/energyplus/trial.hpp"
 #include "adapters/epw/epw_writer.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/model/hourly/hourly_run.hpp"
 #include "daemon/site/model/diagnosis_input.hpp"
-#include "daemon/site/model/hourly_run.hpp"
 #include "daemon/site/replay/stored_readings.hpp"
 
 namespace recald::daemon {
@@ -12,7 +12,8 @@ namespace {
 
 std::vector<profile::LoadBand> bands_of(const diagnosis::SiteProblem& problem,
                                         std::span<const model::MeterMap> maps) {
-  const Eigen::ArrayXXd expected_kW = modelled_kW(problem.nominal, problem.drivers, maps);
+  const Eigen::ArrayXXd expected_kW =
+      model::hourly::modelled_kW(problem.nominal, problem.drivers, maps);
   std::vector<profile::LoadBand> bands;
   std::vector<profile::ModelledHour> compared(problem.drivers->hours.size());
   for (Eigen::Index k = 0; k < expected_kW.cols(); ++k) {
@@ -43,13 +44,15 @@ std::vector<LoadExpectation::MonthErrors> month_errors(const OpenSite& site,
                                                        const weather::WeatherSeries& weather,
                                                        metering::Instant now) {
   const metering::TimeSpan month = site.calendar.month_span(site.calendar.month_of(now));
-  const auto errors = hindcast_errors(site, problem, weather, now - month.begin);
+  const auto errors = drift::hindcast_errors(
+      problem, weather, {site.calendar, site.config.holidays, *site.config.location},
+      now - month.begin);
   std::vector<LoadExpectation::MonthErrors> all;
   for (std::size_t k = 0; k < errors.size(); ++k) {
     const auto measured = problem.measured_kW.col(static_cast<Eigen::Index>(k));
     const double known = static_cast<double>((!measured.isNaN()).count());
     all.push_back(
-        {band_of_errors(errors[k]), measured.isNaN().select(0.0, measured).sum() / known});
+        {drift::band_of_errors(errors[k]), measured.isNaN().select(0.0, measured).sum() / known});
   }
   return all;
 }
@@ -79,11 +82,12 @@ Result<std::vector<ExpectedMeter>> LoadExpectation::expect(const metering::TimeS
   auto drivers =
       TRY(model::make_drivers(months, site_.calendar, site_.config.holidays, *site_.config.building,
                               loads_, *site_.config.location,
-                              continued(weather.filled.series, weather.filled.series.begin, end,
-                                        site_.calendar.month_span(months.back()).end),
+                              weather::continued(weather.filled.series, weather.filled.series.begin,
+                                                 end, site_.calendar.month_span(months.back()).end),
                               model::MissingWeather::assume));
   const auto shared = std::make_shared<const model::Drivers>(std::move(drivers));
-  const Eigen::ArrayXXd expected_kW = modelled_kW(*site_.config.building, shared, maps_);
+  const Eigen::ArrayXXd expected_kW =
+      model::hourly::modelled_kW(*site_.config.building, shared, maps_);
   // Weather that ended in an earlier month says nothing of this one.
   const bool is_in_month = end >= site_.calendar.month_span(months.back()).begin;
   std::vector<ExpectedMeter> meters;

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "core/drift/month_hindcast.hpp"
 #include "core/model/end_use.hpp"
 #include "core/result.hpp"
 #include "daemon/site/model/expected_load.hpp"
 #include "daemon/site/model/modelled_site.hpp"
-#include "daemon/site/model/month_hindcast.hpp"
 
 namespace recald::daemon {
 
@@ -22,7 +22,7 @@ class LoadExpectation {
  public:
   /// Of one output: how far forecasts of months that went on were off, as of this day of theirs.
   struct MonthErrors {
-    std::optional<HindcastBand> band;
+    std::optional<drift::HindcastBand> band;
     double mean_kW;
   };
 

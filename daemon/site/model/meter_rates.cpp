@@ -5,7 +5,7 @@
 namespace recald::daemon {
 
 tariff::Rates rates_of(const SiteConfig& site, const MeterRecord& record) {
-  std::vector<profile::HourlyLoad> hours;
+  std::vector<model::HourlyLoad> hours;
   for (const auto& [month, loads] : record.hours) {
     hours.insert(hours.end(), loads.begin(), loads.end());
   }

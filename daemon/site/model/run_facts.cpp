@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "adapters/system/time_zone_release.hpp"
 #include "daemon/version.hpp"
 

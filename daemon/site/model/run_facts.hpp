@@ -1,4 +1,4 @@
-/// What every result carries besides its numbers, so that it can be trusted and reproduced.
+/// What a result was made from.
 #pragma once
 
 #include <cstdint>
@@ -6,31 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "adapters/ports/job_result.hpp"
+#include "adapters/results/run_facts.hpp"
 #include "core/calibration/calibration.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
-
-struct RunFacts {
-  std::string recald_version;
-  std::string data_revision;  ///< SHA-256 over the site file and all data files.
-  std::string model_version;  ///< Kind of model and SHA-256 of the site file, shortened.
-  std::string time_zone_data;
-  std::string weather_values;  ///< How temperatures were interpreted; empty without weather.
-  std::vector<MonthWeather> weather = {};  ///< The requested months.
-  /// Columns that no source measured and that were therefore assumed: "ghi_W_m2".
-  std::vector<std::string> weather_assumed = {};
-  std::string sampler;
-  std::string hyper_prior_profile;
-  std::uint64_t seed = 1;
-  int iterations = 0;
-  int burn_in = 0;
-  int chains = 0;
-  int design_runs = 0;
-  double wall_s = 0.0;  ///< The only value that differs between equal runs.
-};
 
 /// Hashes everything that the site's results depend on.
 /// @param live_digest  Of the readings from live meters; empty: there were none.

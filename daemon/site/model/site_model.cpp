@@ -77,7 +77,7 @@ Result<ModelFactory> hourly_model(const SiteConfig& site, const SiteModelParts& 
           model::hourly::HourlyOptions{.steps_per_hour = steps}, std::move(alterations));
     };
     if (!parts.effects) return with({});
-    return std::make_unique<AlteredHourlyModel>(with, parts.effects);
+    return std::make_unique<diagnosis::AlteredHourlyModel>(with, parts.effects);
   };
 }
 

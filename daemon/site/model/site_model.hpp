@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "core/diagnosis/model_effects.hpp"
 #include "core/model/epc/prepare.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"
-#include "daemon/site/model/model_effects.hpp"
 
 namespace recald::daemon {
 
@@ -20,7 +20,7 @@ struct SiteModelParts {
   std::vector<const model::ParameterDefinition*> definitions;  ///< (q) for θ.
   std::vector<model::MeterMap> maps;                           ///< (m) for the model's outputs.
   model::ElectricLoads loads;
-  std::shared_ptr<const ModelEffects> effects;    ///< Null: none.
+  std::shared_ptr<const diagnosis::ModelEffects> effects;  ///< Null: none.
   std::vector<diagnosis::MonthlyEffect> monthly;  ///< Of `effects`; empty for an hourly model.
 };
 

@@ -117,9 +117,9 @@ Result<const MeterRecord*> electricity_meter(const SiteConfig& site, const Recor
                  "none; add a [[meter]] with utility = \"electricity\"");
 }
 
-std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
-                                          const std::vector<Month>& months) {
-  std::vector<profile::HourlyLoad> loads;
+std::vector<model::HourlyLoad> loads_of(const MeterRecord& record,
+                                        const std::vector<Month>& months) {
+  std::vector<model::HourlyLoad> loads;
   for (const Month month : months) {
     const auto found = record.hours.find(month);
     if (found == record.hours.end()) continue;

@@ -7,9 +7,9 @@
 
 #include "core/assessment/output_assessment.hpp"
 #include "core/display/warning.hpp"
+#include "core/model/electricity_profile.hpp"
 #include "core/model/end_use.hpp"
 #include "core/model/parameter_library.hpp"
-#include "core/profile/electricity_profile.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "daemon/site/replay/recording.hpp"
@@ -42,8 +42,8 @@ struct SiteMonths {
                                                            const Recording& recording);
 
 /// The recorded hours of these months, in their order.
-[[nodiscard]] std::vector<profile::HourlyLoad> loads_of(const MeterRecord& record,
-                                                        const std::vector<metering::Month>& months);
+[[nodiscard]] std::vector<model::HourlyLoad> loads_of(const MeterRecord& record,
+                                                      const std::vector<metering::Month>& months);
 
 /// The parameters that the site file names. @pre the site has a model of a [building]
 /// @return or the error of `find_parameter` or `make_parameter`

@@ -113,7 +113,7 @@ class SlotRecord {
  public:
   void take(const ClosedMonth& closed, MeterRecord& record) {
     const metering::Month month = closed.figure.month;
-    record.hours[month] = profile::hourly_loads(closed.slots);
+    record.hours[month] = model::hourly_loads(closed.slots);
     episodes_[month] = metering::find_episodes(closed.slots);
     zero_runs_[month] = metering::find_believed_zero_runs(closed.slots);
   }

@@ -12,7 +12,7 @@
 #include "core/metering/months/data_quality.hpp"
 #include "core/metering/months/level_change.hpp"
 #include "core/metering/months/month_closer.hpp"
-#include "core/profile/electricity_profile.hpp"
+#include "core/model/electricity_profile.hpp"
 #include "core/result.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -25,7 +25,7 @@ struct MeterRecord {
   std::optional<csv::MeterInFile> in_file;  ///< Absent: the file has no row of this meter.
   csv::MeterReport rows{};
   std::vector<metering::MonthlyFigure> figures;  ///< Ascending; the latest revision of each month.
-  std::map<metering::Month, std::vector<profile::HourlyLoad>> hours;
+  std::map<metering::Month, std::vector<model::HourlyLoad>> hours;
   metering::MeterCounts counts;
   std::vector<metering::LevelChange> level_changes;
   std::vector<metering::DataFinding> findings;

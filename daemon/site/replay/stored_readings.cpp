@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "adapters/stores/open.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "core/absent.hpp"
 #include "core/metering/months/closing_rules.hpp"
 

@@ -10,10 +10,10 @@
 #include "adapters/results/job_result_json.hpp"
 #include "adapters/shapes/assessment_shapes.hpp"
 #include "adapters/shapes/shape_json.hpp"
+#include "adapters/views/frame/provenance.hpp"
 #include "core/absent.hpp"
 #include "core/display/warning.hpp"
 #include "core/regression/fit_quality.hpp"
-#include "daemon/site/results/provenance_json.hpp"
 
 SHAPE(recald::calibration::Summary, name, unit, mean, sd, q05, q50, q95, contraction, rhat,
       ess_bulk, ess_tail, mcse);
@@ -341,7 +341,7 @@ Json schedule_json(const model::HourlySchedule& schedule) {
   return by_day;
 }
 
-Json profile_object(const profile::ElectricityProfile& profile) {
+Json profile_object(const model::ElectricityProfile& profile) {
   return {{"measured_kW", schedule_json(profile.measured_kW)},
           {"standard_error_kW", schedule_json(profile.standard_error_kW)},
           {"lights_kW", schedule_json(profile.loads.lights_kW)},
@@ -396,7 +396,7 @@ Json forecasts_alone_json(const assessment::AssessedCalibration& result, const R
                {"unseen_months_within_limits", unseen_limits_json(result)},
                {"predictions", predictions_json(result)},
                {"warnings", warnings_json(result)}};
-  add_provenance(facts, json);
+  views::add_provenance(facts, json);
   return json;
 }
 
@@ -443,7 +443,7 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
                {"chains", facts.chains},
                {"design_runs", facts.design_runs},
                {"seed", facts.seed}};
-  add_provenance(facts, json);
+  views::add_provenance(facts, json);
   json["sampling"] = sampling_json(calibration.sampling);
   json["evidence"] = evidence_json(calibration);
   json["leave_out"] = leave_out_json(calibration);
@@ -454,15 +454,15 @@ std::string calibration_json(const assessment::AssessedCalibration& result, cons
 
 JobResult calibration_result(const assessment::AssessedCalibration& result, const RunFacts& facts,
                              const FollowUp* follow_up) {
-  JobResult told{.document = calibration_json(result, facts, follow_up)};
+  JobResult job{.document = calibration_json(result, facts, follow_up)};
   for (const auto* summaries :
        {&result.calibration.parameters, &result.calibration.hyperparameters}) {
     for (const calibration::Summary& s : *summaries) {
-      told.rhat_max = std::fmax(told.rhat_max, s.rhat);
+      job.rhat_max = std::fmax(job.rhat_max, s.rhat);
     }
   }
-  if (follow_up != nullptr && *follow_up) told.drift = **follow_up;
-  return told;
+  if (follow_up != nullptr && *follow_up) job.drift = **follow_up;
+  return job;
 }
 
 std::string draws_csv(const assessment::AssessedCalibration& result, std::size_t chain,
@@ -566,7 +566,7 @@ std::string months_csv(const DesignCalibration& result) {
   return text;
 }
 
-std::string profile_json(const profile::ElectricityProfile& profile) {
+std::string profile_json(const model::ElectricityProfile& profile) {
   return profile_object(profile).dump(2) + "\n";
 }
 

@@ -47,6 +47,6 @@ using FollowUp = tl::expected<DriftSummary, std::string>;
 [[nodiscard]] std::string months_csv(const DesignCalibration& result);
 
 /// The profile as JSON: schedules in kW by kind of day and hour.
-[[nodiscard]] std::string profile_json(const profile::ElectricityProfile& profile);
+[[nodiscard]] std::string profile_json(const model::ElectricityProfile& profile);
 
 }  // namespace recald::daemon

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "adapters/report/meters_page.hpp"
-#include "adapters/report/report.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
+#include "adapters/views/calibration/report.hpp"
+#include "adapters/views/meters/meters_page.hpp"
 #include "daemon/site/results/calibration_files.hpp"
 #include "daemon/site/results/design_files.hpp"
 #include "daemon/site/results/diagnosis_folder.hpp"
@@ -47,24 +47,24 @@ Result<void> write_files(const assessment::AssessedCalibration& result, const Ru
 }  // namespace
 
 std::string render(const FinishedCalibration& done, const std::string& generated_at,
-                   const std::string& most_likely, std::vector<report::ComparedModel> compared) {
+                   const std::string& most_likely, std::vector<views::ComparedModel> compared) {
   const ModelledSite& modelled = done.modelled;
   const OpenSite& site = modelled.site;
   if (!done.calibration.not_calibrated_because.empty()) {
-    return report::render_meters(meters_report_of(site.config, site.calendar, modelled.recording,
-                                                  {&modelled.weather, &done.calibration, ""},
-                                                  modelled.facts, generated_at));
+    return views::render_meters(meters_report_of(site.config, site.calendar, modelled.recording,
+                                                 {&modelled.weather, &done.calibration, ""},
+                                                 modelled.facts, generated_at));
   }
-  report::ReportData data = report_of(site.config, site.calendar, modelled.recording,
-                                      done.calibration, modelled.facts, generated_at);
+  views::ReportData data = report_of(site.config, site.calendar, modelled.recording,
+                                     done.calibration, modelled.facts, generated_at);
   data.most_likely = most_likely;
   data.compared = std::move(compared);
-  return report::render_report(data);
+  return views::render_report(data);
 }
 
 Result<void> write_calibration(const FinishedCalibration& done, const std::string& json,
                                const std::string& generated_at, const std::filesystem::path& folder,
-                               std::vector<report::ComparedModel> compared) {
+                               std::vector<views::ComparedModel> compared) {
   const RunFacts& facts = done.modelled.facts;
   std::vector<ResultFile> files{
       {"months.csv", months_csv(done.modelled.recording, facts.time_zone_data)}};
@@ -95,7 +95,7 @@ Result<void> write_calibration(const FinishedDesign& done, const std::string& mo
     files.push_back(
         {"metamodel.json", metamodel_json(*result.fitted, result.fitted->notes, done.facts)});
   }
-  files.push_back({"report.html", report::render_report(report_of(done, generated_at))});
+  files.push_back({"report.html", views::render_report(report_of(done, generated_at))});
   return write_files(result, done.facts, files, json, folder);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/report/report_data.hpp"
+#include "adapters/views/frame/report_data.hpp"
 #include "core/result.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
 
@@ -17,7 +17,7 @@ namespace recald::daemon {
 /// @param compared      All models of the site, where it has several.
 [[nodiscard]] std::string render(const FinishedCalibration& done, const std::string& generated_at,
                                  const std::string& most_likely = "",
-                                 std::vector<report::ComparedModel> compared = {});
+                                 std::vector<views::ComparedModel> compared = {});
 
 /// Draws, months, profile, page and, last, calibration.json: who finds that finds everything it
 /// speaks of. What an earlier calibration left in the folder goes. Where no model was calibrated
@@ -26,7 +26,7 @@ namespace recald::daemon {
                                              const std::string& json,
                                              const std::string& generated_at,
                                              const std::filesystem::path& folder,
-                                             std::vector<report::ComparedModel> compared = {});
+                                             std::vector<views::ComparedModel> compared = {});
 
 /// The same of a calibration on a design, which has no profile but a screening and a meta-model.
 /// @param months  months.csv.

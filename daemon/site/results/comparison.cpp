@@ -15,7 +15,7 @@ using assessment::FitMetrics;
 using assessment::PeriodMetrics;
 using Json = nlohmann::ordered_json;
 
-report::ComparedFit fit_of(const assessment::OutputAssessment& assessed) {
+views::ComparedFit fit_of(const assessment::OutputAssessment& assessed) {
   return {assessed.before,
           assessed.after,
           {assessed.forecast.calibration.metrics, assessed.forecast.validation.metrics}};
@@ -56,10 +56,10 @@ std::string model_label(ModelKind kind) {
   return "EnergyPlus";
 }
 
-std::vector<report::ComparedModel> compared_models(const std::vector<SiteModelResult>& models) {
-  std::vector<report::ComparedModel> compared;
+std::vector<views::ComparedModel> compared_models(const std::vector<SiteModelResult>& models) {
+  std::vector<views::ComparedModel> compared;
   for (const SiteModelResult& model : models) {
-    report::ComparedModel& shown = compared.emplace_back();
+    views::ComparedModel& shown = compared.emplace_back();
     shown.name = model_label(model.kind);
     if (!model.done) {
       shown.note = model.done.error().message + ".";
@@ -94,7 +94,7 @@ Json comparison_json(const std::vector<SiteModelResult>& models) {
     const SiteCalibration& result = model.done->calibration;
     one["status"] = result.calibration.converged ? "converged" : "not converged";
     for (const assessment::OutputCalibration& output : result.outputs) {
-      const report::ComparedFit fit = fit_of(output.assessment);
+      const views::ComparedFit fit = fit_of(output.assessment);
       one["outputs"][output.name] = {{"fitted", output.calibrated},
                                      {"before", period_json(fit.before)},
                                      {"after", period_json(fit.after)},
@@ -117,7 +117,7 @@ std::string comparison_words(const std::vector<SiteModelResult>& models) {
   std::string text =
       "\nModels beside each other, CV(RMSE) of the model before and after, and of the "
       "forecast:\n";
-  for (const report::ComparedModel& model : compared_models(models)) {
+  for (const views::ComparedModel& model : compared_models(models)) {
     if (!model.note.empty()) text += fmt::format("  {:<14} {}\n", model.name, model.note);
     for (const auto& [label, fit] : model.outputs) {
       text += fmt::format("  {:<14} {:<24} {:>8} {:>8} {:>8}\n", model.name, label,

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/report/report_data.hpp"
+#include "adapters/views/frame/report_data.hpp"
 #include "core/result.hpp"
 #include "daemon/site/calibrate/finished_calibration.hpp"
 
@@ -21,7 +21,7 @@ struct SiteModelResult {
 [[nodiscard]] std::string model_label(ModelKind kind);
 
 /// What the page shows of them.
-[[nodiscard]] std::vector<report::ComparedModel> compared_models(
+[[nodiscard]] std::vector<views::ComparedModel> compared_models(
     const std::vector<SiteModelResult>& models);
 
 /// For comparison.json: fits of each model by output, medians and intervals of its parameters.

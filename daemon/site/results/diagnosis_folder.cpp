@@ -1,14 +1,15 @@
 #include "daemon/site/results/diagnosis_folder.hpp"
+#include "daemon/site/results/report_parts.hpp"
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "adapters/report/diagnosis_page.hpp"
-#include "adapters/report/most_likely.hpp"
-#include "adapters/system/write_file.hpp"
-#include "daemon/site/results/diagnosis_report.hpp"
-#include "daemon/site/results/diagnosis_words.hpp"
+#include "adapters/system/files/write_file.hpp"
+#include "adapters/views/diagnosis/diagnosis_page.hpp"
+#include "adapters/views/diagnosis/diagnosis_report.hpp"
+#include "adapters/views/diagnosis/diagnosis_words.hpp"
+#include "adapters/views/frame/most_likely.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -20,7 +21,7 @@ Result<void> complete_report(const std::filesystem::path& folder, const std::str
   if (!in) return {};
   std::ostringstream page;
   page << in.rdbuf();
-  auto completed = report::with_most_likely(std::move(page).str(), data_revision, most_likely);
+  auto completed = views::with_most_likely(std::move(page).str(), data_revision, most_likely);
   if (!completed) return {};
   return system::write_file(folder / "report.html", *completed);
 }
@@ -30,8 +31,9 @@ Result<void> complete_report(const std::filesystem::path& folder, const std::str
 Result<void> write_diagnosis(const SiteDiagnosis& done, const ModelledSite& modelled,
                              const diagnosis::SiteProblem& problem, const std::string& json,
                              const std::string& at, const std::filesystem::path& folder) {
-  const std::string page = report::render_diagnosis(diagnosis_report_of(
-      modelled.site.config, done.diagnosis, problem, modelled.facts, at, done.others));
+  const std::string page = views::render_diagnosis(
+      views::diagnosis_report_of(site_line_of(modelled.site.config), done.diagnosis, problem,
+                                 modelled.facts, at, done.others));
   // The old one goes before a new page comes, so that no interruption leaves a result beside the
   // page of another.
   std::error_code ignored;  // what cannot be removed cannot be written either, which is reported
@@ -39,7 +41,7 @@ Result<void> write_diagnosis(const SiteDiagnosis& done, const ModelledSite& mode
   if (auto written = system::write_file(folder / "diagnosis.html", page); !written) return written;
   if (auto written = system::write_file(folder / "diagnosis.json", json); !written) return written;
   return complete_report(folder, modelled.facts.data_revision,
-                         most_likely_words(done.diagnosis, problem));
+                         views::most_likely_words(done.diagnosis, problem));
 }
 
 std::string most_likely_in(const std::filesystem::path& folder, const std::string& data_revision) {

@@ -8,6 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "adapters/views/diagnosis/diagnosis_words.hpp"
+#include "adapters/views/frame/provenance.hpp"
+#include "adapters/views/meters/meters_words.hpp"
 #include "core/absent.hpp"
 #include "core/change_point/regression.hpp"
 #include "core/display/id_words.hpp"
@@ -18,8 +21,6 @@
 #include "daemon/site/calibrate/meter_days.hpp"
 #include "daemon/site/calibrate/meter_forecast.hpp"
 #include "daemon/site/replay/stored_readings.hpp"
-#include "daemon/site/results/diagnosis_words.hpp"
-#include "daemon/site/results/meters_words.hpp"
 #include "daemon/site/results/report_parts.hpp"
 
 namespace recald::daemon {
@@ -38,12 +39,12 @@ const OutputCalibration* output_of(const SiteCalibration* forecast, std::size_t 
   return found == forecast->outputs.end() ? nullptr : &*found;
 }
 
-std::vector<report::OutputMonth> months_of(const MeterRecord& record,
-                                           const SiteCalibration* forecast,
-                                           const OutputCalibration* output) {
-  std::vector<report::OutputMonth> months;
+std::vector<views::OutputMonth> months_of(const MeterRecord& record,
+                                          const SiteCalibration* forecast,
+                                          const OutputCalibration* output) {
+  std::vector<views::OutputMonth> months;
   for (const metering::MonthlyFigure& figure : record.figures) {
-    report::OutputMonth& month = months.emplace_back(report::OutputMonth{.figure = figure});
+    views::OutputMonth& month = months.emplace_back(views::OutputMonth{.figure = figure});
     month.flagged_different = metering::is_different(record.level_changes, figure.month);
     if (output == nullptr) continue;
     const auto place = std::ranges::find(forecast->months, figure.month);
@@ -68,7 +69,7 @@ std::vector<double> base_loads_kW(const MeterRecord& record, const model::Holida
 
 /// Of the last twelve months that have hours: an older building may be another one.
 profile::LoadShape shape_of(const MeterRecord& record, const model::Holidays& holidays) {
-  std::vector<profile::HourlyLoad> loads;
+  std::vector<model::HourlyLoad> loads;
   int months = 0;
   for (auto it = record.hours.rbegin(); it != record.hours.rend() && months < 12; ++it, ++months) {
     loads.insert(loads.end(), it->second.begin(), it->second.end());
@@ -101,7 +102,7 @@ std::vector<std::vector<DayType>> alike_kinds(const Regression& regression) {
   return groups;
 }
 
-void add_rows(const Regression& regression, report::TemperatureFit& fit) {
+void add_rows(const Regression& regression, views::TemperatureFit& fit) {
   for (const std::vector<DayType>& kinds : alike_kinds(regression)) {
     const auto kind = static_cast<std::size_t>(kinds.front());
     const change_point::Curve& curve = regression.curves[regression.curve_of[kind]];
@@ -113,8 +114,8 @@ void add_rows(const Regression& regression, report::TemperatureFit& fit) {
                         .heating_balance_C = curve.heating_balance_C,
                         .cooling_slope_kWh_K = cools ? curve.cooling_slope_kWh_K : kAbsent,
                         .cooling_balance_C = curve.cooling_balance_C});
-    report::TemperatureLine& line =
-        fit.lines.emplace_back(report::TemperatureLine{kinds.front(), {}});
+    views::TemperatureLine& line =
+        fit.lines.emplace_back(views::TemperatureLine{kinds.front(), {}});
     for (const double at : {regression.coldest_C, curve.heating_balance_C, curve.cooling_balance_C,
                             regression.warmest_C}) {
       if (!(regression.coldest_C <= at && at <= regression.warmest_C)) continue;
@@ -143,9 +144,9 @@ struct Weather {
 };
 
 /// @return or why there is none, as a sentence.
-tl::expected<report::TemperatureFit, std::string> temperature_of(const Weather& weather,
-                                                                 const MeterRecord& record,
-                                                                 const OutputCalibration& output) {
+tl::expected<views::TemperatureFit, std::string> temperature_of(const Weather& weather,
+                                                                const MeterRecord& record,
+                                                                const OutputCalibration& output) {
   const std::map<Day, double> energies = daily_energies_kWh(record);
   const auto days = [&](MonthRole role) {
     return meter_days(weather.site.holidays, weather.forecast, output, role, weather.dry_bulbs_C,
@@ -161,7 +162,7 @@ tl::expected<report::TemperatureFit, std::string> temperature_of(const Weather& 
         display::with_temperatures_in(weather.site.units, regression->no_temperature_because) +
         ".");
   }
-  report::TemperatureFit fit{
+  views::TemperatureFit fit{
       .sentence = change_point::describe(
           *regression, display::meter_units(weather.site.units, record.meter.utility),
           display::unit_of(weather.site.units, "degC")),
@@ -180,13 +181,13 @@ tl::expected<report::TemperatureFit, std::string> temperature_of(const Weather& 
 
 void add_meter(const SiteConfig& site, const MeterRecord& record, std::size_t meter,
                const MeterForecasts& forecasts, const std::optional<Weather>& weather,
-               report::MetersData& data) {
+               views::MetersData& data) {
   const OutputCalibration* output = output_of(forecasts.forecast, meter);
-  report::MeterPart part{.year = compare_years(record.figures, record.level_changes),
-                         .month_base_kW = base_loads_kW(record, site.holidays),
-                         .shape = shape_of(record, site.holidays),
-                         .temperature = {},
-                         .no_temperature_because = forecasts.lacking};
+  views::MeterPart part{.year = views::compare_years(record.figures, record.level_changes),
+                        .month_base_kW = base_loads_kW(record, site.holidays),
+                        .shape = shape_of(record, site.holidays),
+                        .temperature = {},
+                        .no_temperature_because = forecasts.lacking};
   const std::string label = display::meter_label(record.meter.id);
   if (weather && output != nullptr) {
     auto fit = temperature_of(*weather, record, *output);
@@ -212,14 +213,14 @@ void add_meter(const SiteConfig& site, const MeterRecord& record, std::size_t me
     data.common.findings.push_back(std::move(finding));
   }
   for (const metering::LevelChange& change : record.level_changes) {
-    data.changes.push_back(change_words(label, change));
+    data.changes.push_back(views::change_words(label, change));
   }
 }
 
 /// Every month of a meter that has a figure.
-report::MeterCosts costs_of(const SiteConfig& site, const MeterRecord& record) {
-  report::MeterCosts costs{display::meter_label(record.meter.id), {}};
-  const std::vector<profile::HourlyLoad> none;
+views::MeterCosts costs_of(const SiteConfig& site, const MeterRecord& record) {
+  views::MeterCosts costs{display::meter_label(record.meter.id), {}};
+  const std::vector<model::HourlyLoad> none;
   for (const metering::MonthlyFigure& figure : record.figures) {
     if (!figure.usable) continue;
     const auto hours = record.hours.find(figure.month);
@@ -233,7 +234,7 @@ report::MeterCosts costs_of(const SiteConfig& site, const MeterRecord& record) {
 
 /// Meters whose utility the site file prices or whose emissions it gives.
 void add_costs(const SiteConfig& site, const Recording& recording, std::size_t shown,
-               report::ReportData& data) {
+               views::ReportData& data) {
   data.currency = site.tariff.currency;
   for (std::size_t meter = 0; meter < shown; ++meter) {
     const MeterRecord& record = recording.meters[meter];
@@ -256,9 +257,9 @@ std::string no_changes_words(const Recording& recording) {
                "one year yet.";
 }
 
-report::FirstScreen first_of(const Recording& recording, const SiteCalibration* forecast,
-                             const report::MetersData& data) {
-  std::vector<MeterStory> stories;
+views::FirstScreen first_of(const Recording& recording, const SiteCalibration* forecast,
+                            const views::MetersData& data) {
+  std::vector<views::MeterStory> stories;
   for (std::size_t i = 0; i < data.meters.size(); ++i) {
     const OutputCalibration* output = output_of(forecast, i);
     stories.push_back(
@@ -269,12 +270,12 @@ report::FirstScreen first_of(const Recording& recording, const SiteCalibration* 
          .unseen = output == nullptr ? std::nullopt : output->assessment.forecast.unseen_mean,
          .base_share = data.meters[i].shape.base_share});
   }
-  return first_screen_of(stories);
+  return views::first_screen_of(stories);
 }
 
 void add_notices(const Recording& recording, const SiteCalibration* forecast,
-                 report::MetersData& data) {
-  using report::Severity;
+                 views::MetersData& data) {
+  using views::Severity;
   if (forecast == nullptr) {
     for (const std::string& note : recording.notes) {
       data.common.notices.push_back(notice_of(Severity::warning, display::warning_of(note)));
@@ -287,13 +288,6 @@ void add_notices(const Recording& recording, const SiteCalibration* forecast,
   if (!forecast->not_calibrated_because.empty()) {
     data.common.notices.push_back({Severity::info, forecast->not_calibrated_because});
   }
-}
-
-report::Provenance provenance_of_meters(const RunFacts& facts) {
-  report::Provenance from = provenance_of(facts);
-  from.seed.reset();  // nothing was drawn
-  from.iterations = from.burn_in = from.chains = std::nullopt;
-  return from;
 }
 
 /// The site's own period, or all months that any meter can use. Absent: there is none.
@@ -322,15 +316,15 @@ Result<SiteWeather> weather_of(const OpenSite& site) {
 
 }  // namespace
 
-report::MetersData meters_report_of(const SiteConfig& site, const metering::LocalCalendar& calendar,
-                                    const Recording& recording, const MeterForecasts& forecasts,
-                                    const RunFacts& facts, std::string generated_at) {
-  report::MetersData data;
+views::MetersData meters_report_of(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                                   const Recording& recording, const MeterForecasts& forecasts,
+                                   const RunFacts& facts, std::string generated_at) {
+  views::MetersData data;
   data.common = {.title = "Meters of " + site.name,
                  .generated_at = std::move(generated_at),
-                 .site = {site.id, site.name, site.timezone},
+                 .site = site_line_of(site),
                  .calendar = calendar,
-                 .provenance = provenance_of_meters(facts),
+                 .provenance = views::provenance_of(facts),
                  .units = site.units};
   std::optional<Weather> weather;
   if (forecasts.forecast != nullptr) {
@@ -363,8 +357,8 @@ Result<std::string> render_meters_of(const OpenSite& site, const Recording& reco
   }
   if (!facts) return tl::unexpected(facts.error());
   const auto rendered = [&](const MeterForecasts& forecasts) {
-    return report::render_meters(meters_report_of(site.config, site.calendar, recording, forecasts,
-                                                  *facts, std::move(generated_at)));
+    return views::render_meters(meters_report_of(site.config, site.calendar, recording, forecasts,
+                                                 *facts, std::move(generated_at)));
   };
   if (!site.config.weather || recording.meters.size() > kMetersOnPage) return rendered({});
   const auto lacking = [&](const std::string& why) {

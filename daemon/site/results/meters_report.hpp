@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "adapters/report/meters_page.hpp"
+#include "adapters/views/meters/meters_page.hpp"
 #include "daemon/site/calibrate/site_calibration.hpp"
 #include "daemon/site/model/modelled_site.hpp"
 
@@ -20,11 +20,11 @@ struct MeterForecasts {
   std::string lacking;                        ///< Why there is none, as a sentence.
 };
 
-[[nodiscard]] report::MetersData meters_report_of(const SiteConfig& site,
-                                                  const metering::LocalCalendar& calendar,
-                                                  const Recording& recording,
-                                                  const MeterForecasts& forecasts,
-                                                  const RunFacts& facts, std::string generated_at);
+[[nodiscard]] views::MetersData meters_report_of(const SiteConfig& site,
+                                                 const metering::LocalCalendar& calendar,
+                                                 const Recording& recording,
+                                                 const MeterForecasts& forecasts,
+                                                 const RunFacts& facts, std::string generated_at);
 
 /// Meters that were recorded without their weather: reads it and regresses them, where the site has
 /// one. Without a [period] all months that any meter has, the last twelve of two years unseen. What

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <utility>
 
+#include "adapters/views/calibration/calibration_words.hpp"
+#include "adapters/views/diagnosis/diagnosis_words.hpp"
+#include "adapters/views/frame/provenance.hpp"
 #include "core/absent.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/warning.hpp"
 #include "core/regression/fit_quality.hpp"
 #include "daemon/site/model/meter_rates.hpp"
-#include "daemon/site/results/calibration_words.hpp"
-#include "daemon/site/results/diagnosis_words.hpp"
 #include "daemon/site/results/report_parts.hpp"
 
 namespace recald::daemon {
@@ -26,12 +27,12 @@ struct ShownOutput {
   std::string label;  ///< "Chilled water"
 };
 
-report::ParameterResult parameter_of(const AssessedCalibration& result, std::size_t j,
-                                     std::string label) {
-  report::ParameterResult shown{.label = std::move(label),
-                                .prior = result.parameters[j].prior,
-                                .summary = result.calibration.parameters[j],
-                                .draws = {}};
+views::ParameterResult parameter_of(const AssessedCalibration& result, std::size_t j,
+                                    std::string label) {
+  views::ParameterResult shown{.label = std::move(label),
+                               .prior = result.parameters[j].prior,
+                               .summary = result.calibration.parameters[j],
+                               .draws = {}};
   for (const calibration::ChainDraws& chain : result.calibration.chains) {
     const auto column = chain.theta.col(static_cast<Eigen::Index>(j));
     shown.draws.insert(shown.draws.end(), column.begin(), column.end());
@@ -42,11 +43,10 @@ report::ParameterResult parameter_of(const AssessedCalibration& result, std::siz
 bool is_peak(const assessment::OutputCalibration& output) { return output.unit == "kW"; }
 
 /// The months of the result, and those that belong to no period: they still show what was measured.
-std::vector<report::OutputMonth> months_of(const Recording& recording,
-                                           const SiteCalibration& result,
-                                           const assessment::OutputCalibration& output) {
+std::vector<views::OutputMonth> months_of(const Recording& recording, const SiteCalibration& result,
+                                          const assessment::OutputCalibration& output) {
   const MeterRecord& record = recording.meters[output.meter];
-  std::vector<report::OutputMonth> months;
+  std::vector<views::OutputMonth> months;
   for (std::size_t i = 0; i < result.months.size(); ++i) {
     const metering::Month month = result.months[i];
     const auto figure = std::ranges::find(record.figures, month, &metering::MonthlyFigure::month);
@@ -62,19 +62,18 @@ std::vector<report::OutputMonth> months_of(const Recording& recording,
     if (std::ranges::find(result.months, figure.month) != result.months.end()) continue;
     months.push_back({.figure = figure, .box = {}, .forecast = {}});
   }
-  for (report::OutputMonth& month : months) {
+  for (views::OutputMonth& month : months) {
     month.flagged_different = is_site_different(recording, month.figure.month);
   }
-  std::ranges::sort(months, {},
-                    [](const report::OutputMonth& month) { return month.figure.month; });
+  std::ranges::sort(months, {}, [](const views::OutputMonth& month) { return month.figure.month; });
   return months;
 }
 
-report::DayTypeProfile day_profile_of(const profile::ElectricityProfile& profile,
-                                      model::DayType day, std::string label) {
-  report::DayTypeProfile shown{.label = std::move(label)};
+views::DayTypeProfile day_profile_of(const model::ElectricityProfile& profile, model::DayType day,
+                                     std::string label) {
+  views::DayTypeProfile shown{.label = std::move(label)};
   const auto hours = [&](auto value) {
-    report::HourlyProfile kW{};
+    views::HourlyProfile kW{};
     for (int hour = 0; hour < 24; ++hour) kW[static_cast<std::size_t>(hour)] = value(hour);
     return kW;
   };
@@ -138,15 +137,15 @@ std::string model_sentence(const std::string& meter, const assessment::OutputAss
 /// What stands first, and behind it the sentences that it is drawn from. Peaks come first only
 /// where there is nothing else.
 void add_answer(const AssessedCalibration& result, const std::vector<ShownOutput>& shown,
-                report::ReportData& data) {
+                views::ReportData& data) {
   const bool has_peaks_alone = std::ranges::all_of(
       shown, [&](const ShownOutput& output) { return is_peak(result.outputs[output.index]); });
-  std::vector<FittedMeter> meters;
+  std::vector<views::FittedMeter> meters;
   std::vector<std::string> models;
   for (const auto& [index, meter] : shown) {
     const assessment::OutputCalibration& output = result.outputs[index];
     if (!is_peak(output) || has_peaks_alone) {
-      auto fitted = fitted_meter(meter, output.assessment);
+      auto fitted = views::fitted_meter(meter, output.assessment);
       if (fitted) meters.push_back(std::move(*fitted));
     }
     if (auto text = forecast_sentence(meter, output.assessment); !text.empty()) {
@@ -161,22 +160,22 @@ void add_answer(const AssessedCalibration& result, const std::vector<ShownOutput
     }
   }
   data.headlines.insert(data.headlines.end(), models.begin(), models.end());
-  data.first = calibration_first_screen(meters, result.calibration.converged);
-  data.asks_for_diagnosis = asks_for_diagnosis(meters);
+  data.first = views::calibration_first_screen(meters, result.calibration.converged);
+  data.asks_for_diagnosis = views::asks_for_diagnosis(meters);
 }
 
 /// Of the months that no model has seen: their mean, as sums of money and CO2.
 void add_forecast_cost(const SiteConfig& site, const MeterRecord& record,
                        const SiteCalibration& result, const assessment::OutputCalibration& output,
-                       report::ReportData& data) {
+                       views::ReportData& data) {
   const auto& unseen = output.assessment.forecast.unseen_mean;
   if (!unseen) return;
-  report::ForecastCost cost{.meter = display::meter_label(record.meter.id),
-                            .first = {},
-                            .last = {},
-                            .months = 0,
-                            .money = {},
-                            .emissions_t = {}};
+  views::ForecastCost cost{.meter = display::meter_label(record.meter.id),
+                           .first = {},
+                           .last = {},
+                           .months = 0,
+                           .money = {},
+                           .emissions_t = {}};
   double days = 0.0;
   for (std::size_t i = 0; i < result.months.size(); ++i) {
     if (result.roles[i] != assessment::MonthRole::validation || std::isnan(output.measured[i])) {
@@ -189,8 +188,8 @@ void add_forecast_cost(const SiteConfig& site, const MeterRecord& record,
   const auto sum = [&](double rate) {
     const assessment::MonthForecast& f = unseen->forecast;
     const double factor = rate * days;
-    return report::ForecastSum{factor * f.mean, factor * f.q05, factor * f.q95,
-                               factor * unseen->measured};
+    return views::ForecastSum{factor * f.mean, factor * f.q05, factor * f.q95,
+                              factor * unseen->measured};
   };
   const tariff::Rates rates = rates_of(site, record);
   if (rates.per_kWh) cost.money = sum(*rates.per_kWh);
@@ -199,7 +198,7 @@ void add_forecast_cost(const SiteConfig& site, const MeterRecord& record,
 }
 
 void add_not_known(const AssessedCalibration& result, const std::vector<ShownOutput>& shown,
-                   report::ReportData& data) {
+                   views::ReportData& data) {
   for (const auto& [index, label] : shown) {
     const std::string& because = result.outputs[index].not_fitted_because;
     if (!because.empty()) data.not_known.push_back(label + " is not fitted. " + because);
@@ -224,16 +223,16 @@ void add_not_known(const AssessedCalibration& result, const std::vector<ShownOut
 
 /// What a page says of any calibration, wherever its model came from. Its parameters are there.
 void add_calibration(const AssessedCalibration& result, const std::vector<ShownOutput>& shown,
-                     report::ReportData& data) {
+                     views::ReportData& data) {
   add_answer(result, shown, data);
   if (!result.calibration.converged) {
-    data.notices.push_back({report::Severity::failure,
+    data.notices.push_back({views::Severity::failure,
                             "The sampler has not converged to the limits set for it (R-hat, "
                             "effective sample size): treat intervals as rough."});
   }
   for (const auto* warnings : {&result.alarms, &result.warnings}) {
     for (const display::Warning& warning : *warnings) {
-      data.notices.push_back(notice_of(report::Severity::warning, warning));
+      data.notices.push_back(notice_of(views::Severity::warning, warning));
     }
   }
   add_not_known(result, shown, data);
@@ -262,15 +261,15 @@ std::vector<ShownOutput> shown_of(const DesignCalibration& result) {
 }
 
 /// What the folder knows of a month: a figure, and nothing of the readings behind it.
-report::OutputMonth month_of(const DesignCalibration& result,
-                             const assessment::OutputCalibration& output, std::size_t i) {
-  report::OutputMonth shown{.figure = {.daily_average_kWh = output.measured[i],
-                                       .coverage = kAbsent,
-                                       .filled_share = kAbsent,
-                                       .usable = !std::isnan(output.measured[i])},
-                            .role = result.roles[i],
-                            .box = output.assessment.boxes[i],
-                            .forecast = output.assessment.forecast.months[i]};
+views::OutputMonth month_of(const DesignCalibration& result,
+                            const assessment::OutputCalibration& output, std::size_t i) {
+  views::OutputMonth shown{.figure = {.daily_average_kWh = output.measured[i],
+                                      .coverage = kAbsent,
+                                      .filled_share = kAbsent,
+                                      .usable = !std::isnan(output.measured[i])},
+                           .role = result.roles[i],
+                           .box = output.assessment.boxes[i],
+                           .forecast = output.assessment.forecast.months[i]};
   if (is_peak(output) && shown.figure.usable) {
     shown.figure.peak = metering::PeakDemand{.kW = output.measured[i]};
   }
@@ -284,16 +283,16 @@ report::OutputMonth month_of(const DesignCalibration& result,
 
 }  // namespace
 
-report::ReportData report_of(const SiteConfig& site, const metering::LocalCalendar& calendar,
-                             const Recording& recording, const SiteCalibration& result,
-                             const RunFacts& facts, std::string generated_at) {
-  report::ReportData data{.title = "Calibration of " + site.name,
-                          .generated_at = std::move(generated_at),
-                          .site = {site.id, site.name, site.timezone},
-                          .calendar = calendar,
-                          .provenance = provenance_of(facts),
-                          .units = site.units,
-                          .currency = site.tariff.currency};
+views::ReportData report_of(const SiteConfig& site, const metering::LocalCalendar& calendar,
+                            const Recording& recording, const SiteCalibration& result,
+                            const RunFacts& facts, std::string generated_at) {
+  views::ReportData data{.title = "Calibration of " + site.name,
+                         .generated_at = std::move(generated_at),
+                         .site = site_line_of(site),
+                         .calendar = calendar,
+                         .provenance = views::sampled_provenance_of(facts),
+                         .units = site.units,
+                         .currency = site.tariff.currency};
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     data.parameters.push_back(parameter_of(result, j, result.parameters[j].label));
   }
@@ -339,12 +338,12 @@ report::ReportData report_of(const SiteConfig& site, const metering::LocalCalend
   return data;
 }
 
-report::ReportData report_of(const FinishedDesign& done, std::string generated_at) {
+views::ReportData report_of(const FinishedDesign& done, std::string generated_at) {
   const DesignCalibration& result = done.calibration;
-  report::ReportData data{.title = "Calibration of " + done.name,
-                          .generated_at = std::move(generated_at),
-                          .site = {.id = {}, .name = done.name, .time_zone = {}},
-                          .provenance = provenance_of(done.facts)};
+  views::ReportData data{.title = "Calibration of " + done.name,
+                         .generated_at = std::move(generated_at),
+                         .site = {.id = {}, .name = done.name, .time_zone = {}},
+                         .provenance = views::sampled_provenance_of(done.facts)};
   for (std::size_t j = 0; j < result.parameters.size(); ++j) {
     data.parameters.push_back(parameter_of(result, j, result.parameters[j].name));
   }
@@ -352,7 +351,7 @@ report::ReportData report_of(const FinishedDesign& done, std::string generated_a
   const std::vector<std::size_t> in_order = in_order_of_time(result.months);
   for (const auto& [index, label] : shown) {
     const assessment::OutputCalibration& output = result.outputs[index];
-    report::OutputResult& page = data.outputs.emplace_back(report::OutputResult{
+    views::OutputResult& page = data.outputs.emplace_back(views::OutputResult{
         .label = label, .is_peak = is_peak(output), .months = {}, .assessment = output.assessment});
     if (!page.is_peak) page.units.daily = display::Unit{output.unit};
     for (const std::size_t i : in_order) page.months.push_back(month_of(result, output, i));

@@ -94,7 +94,7 @@ struct LightsKnown {
 /// installed power of the rest. At most they are on as far as that rest goes, and part of the
 /// standing load is theirs (corridors, signs).
 LightsKnown lights_known(const model::Building& building,
-                         const profile::ElectricityProfile& profile) {
+                         const model::ElectricityProfile& profile) {
   constexpr std::array<double, model::kDayTypes> kDays{5.0, 1.0, 1.0};
   const double lights_kW = 1e-3 * building.use.lighting_W_m2 * building.floor_area_m2;
   const double plugs_kW = 1e-3 * building.use.plugs_W_m2 * building.floor_area_m2;

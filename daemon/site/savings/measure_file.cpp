@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "adapters/system/regular_file.hpp"
+#include "adapters/system/files/regular_file.hpp"
 #include "core/model/parameter_library.hpp"
 
 namespace recald::daemon {

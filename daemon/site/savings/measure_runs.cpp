@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "adapters/doe/days_file.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "core/design/latin_hypercube.hpp"
 #include "core/random/streams.hpp"
 #include "daemon/site/model/energyplus_site.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "adapters/report/format.hpp"
+#include "adapters/views/frame/format.hpp"
 #include "core/display/id_words.hpp"
 #include "daemon/site/model/meter_rates.hpp"
 #include "daemon/site/model/site_parts.hpp"
@@ -187,8 +187,8 @@ std::string agreement_words(const MeterSince& meter, const display::Unit& energy
   const std::string words = fmt::format(
       "Option D finds {} {} saved than option C, {} than the {} that both together are "
       "uncertain by",
-      report::amount_text(std::abs(apart), energy), apart < 0.0 ? "less" : "more",
-      std::abs(apart) <= doubt ? "no more" : "more", report::amount_text(doubt, energy));
+      views::amount_text(std::abs(apart), energy), apart < 0.0 ? "less" : "more",
+      std::abs(apart) <= doubt ? "no more" : "more", views::amount_text(doubt, energy));
   if (std::abs(apart) <= doubt) return words + ": they agree.";
   return words +
          ". The regression knows the temperature alone; the model knows sun, humidity and "

@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "adapters/report/savings_page.hpp"
 #include "adapters/results/job_result_json.hpp"
 #include "adapters/shapes/assessment_shapes.hpp"
 #include "adapters/shapes/shape_json.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
+#include "adapters/views/frame/provenance.hpp"
+#include "adapters/views/savings/savings_page.hpp"
 #include "core/display/warning.hpp"
-#include "daemon/site/results/provenance_json.hpp"
-#include "daemon/site/savings/savings_words.hpp"
+#include "daemon/site/savings/savings_report.hpp"
 
 SHAPE(recald::savings::Estimate, mean, q05, q50, q95, probability_of_saving);
 SHAPE(recald::daemon::AvoidedEnergy, expected_kWh, avoided_kWh, money, emissions_kg);
@@ -75,7 +75,7 @@ std::string finished_json(Json json, const FinishedCalibration& finished) {
   const RunFacts& facts = finished.modelled.facts;
   json["warnings"] = display::texts_of(finished.calibration.warnings);
   json["seed"] = facts.seed;
-  add_provenance(facts, json);
+  views::add_provenance(facts, json);
   return json.dump(2) + "\n";
 }
 
@@ -163,7 +163,7 @@ Result<void> write_savings(const FinishedCalibration& finished, const SiteSaving
                            const std::filesystem::path& folder) {
   return write_three(
       folder, json, savings_csv(savings),
-      report::render_savings(savings_report_of(finished, savings, std::move(generated_at))));
+      views::render_savings(savings_report_of(finished, savings, std::move(generated_at))));
 }
 
 Result<void> write_savings(const FinishedCalibration& finished, const SavingsSince& savings,
@@ -171,7 +171,7 @@ Result<void> write_savings(const FinishedCalibration& finished, const SavingsSin
                            const std::filesystem::path& folder) {
   return write_three(
       folder, json, savings_csv(savings),
-      report::render_savings(savings_report_of(finished, savings, std::move(generated_at))));
+      views::render_savings(savings_report_of(finished, savings, std::move(generated_at))));
 }
 
 }  // namespace recald::daemon

@@ -31,7 +31,8 @@ constexpr std::size_t kFirstBytes = 4096;
 constexpr std::size_t kSeparatorLines = 60;
 constexpr std::size_t kMetersMax = 500;
 constexpr double kTypicalGas_kWh_per_m3 = 10.55;
-constexpr int kFrozenIntervals = 12;  // as a meter is taken for frozen unless told otherwise
+constexpr int kFrozenIntervals =
+    12;  // as a meter is taken for frozen unless a site file says otherwise
 constexpr std::string_view kOwnHeader = "timestamp,meter,value,unit";
 
 tl::unexpected<Error> about(const std::filesystem::path& file, const Error& error) {

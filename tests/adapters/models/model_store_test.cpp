@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/models/version_file.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "tests/adapters/models/sample_version.hpp"
 #include "tests/support/temporary_folder.hpp"
 

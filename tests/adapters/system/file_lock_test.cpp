@@ -1,4 +1,4 @@
-#include "adapters/system/file_lock.hpp"
+#include "adapters/system/files/file_lock.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 /// Digests of FIPS 180-2, appendix B.
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "adapters/system/child_process.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 namespace recald::blind {
 namespace {

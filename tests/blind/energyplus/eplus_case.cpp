@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "simulators/feed/feed_files.hpp"
 #include "tests/blind/energyplus/foreign_building.hpp"
 #include "tests/blind/population/moved_share.hpp"

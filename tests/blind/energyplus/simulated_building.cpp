@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "simulators/climate/normals.hpp"
 #include "simulators/energyplus/model_edits.hpp"
 #include "tests/blind/energyplus/foreign_building.hpp"

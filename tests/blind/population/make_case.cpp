@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "simulators/feed/feed_files.hpp"
 #include "simulators/scenario/scenario_files.hpp"
 #include "tests/blind/population/base_parameters.hpp"

@@ -14,8 +14,8 @@
 #include <iostream>
 #include <mutex>
 
+#include "adapters/system/files/write_file.hpp"
 #include "adapters/system/parallel_for.hpp"
-#include "adapters/system/write_file.hpp"
 #include "tests/blind/energyplus/eplus_case.hpp"
 #include "tests/blind/population/case_range.hpp"
 #include "tests/blind/population/make_case.hpp"

@@ -5,8 +5,8 @@
 #include <iterator>
 #include <vector>
 
-#include "adapters/system/sha256.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/sha256.hpp"
+#include "adapters/system/files/write_file.hpp"
 
 namespace recald::blind {
 namespace {

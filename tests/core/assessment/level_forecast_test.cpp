@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/drift/calibration_check.hpp"
+#include "core/drift/watch/calibration_check.hpp"
 #include "core/random/rng.hpp"
 
 namespace recald::assessment::level_forecast_test {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/drift/calibration_check.hpp"
+#include "core/drift/watch/calibration_check.hpp"
 #include "core/random/rng.hpp"
 
 namespace recald::assessment::spread_test {

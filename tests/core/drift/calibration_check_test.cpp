@@ -1,4 +1,4 @@
-#include "core/drift/calibration_check.hpp"
+#include "core/drift/watch/calibration_check.hpp"
 
 #include <gmock/gmock.h>
 

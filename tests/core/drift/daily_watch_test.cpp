@@ -1,6 +1,6 @@
 /// A meter watched by the day, in worlds of its own: curved load, noise that lasts for days, months
 /// that are off for no reason that anybody knows.
-#include "core/drift/daily/daily_watch.hpp"
+#include "core/drift/watch/daily_watch.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "core/drift/detectors.hpp"
+#include "core/drift/watch/detectors.hpp"
 
 #include <gmock/gmock.h>
 

@@ -10,7 +10,7 @@
 
 #include "core/calibration/samplers/log_sum.hpp"
 #include "core/calibration/samplers/smc.hpp"
-#include "core/drift/calibration_check.hpp"
+#include "core/drift/watch/calibration_check.hpp"
 #include "tests/core/calibration/small_case.hpp"
 
 namespace recald::drift {

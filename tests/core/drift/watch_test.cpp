@@ -1,4 +1,4 @@
-#include "core/drift/watch.hpp"
+#include "core/drift/watch/watch.hpp"
 
 #include <gmock/gmock.h>
 

@@ -17,8 +17,8 @@ using std::chrono::year;
 
 /// Days from Monday, 4 January 2021 on, each hour whole.
 template <class Load>
-std::vector<HourlyLoad> hours_of(int days, Load load_kW) {
-  std::vector<HourlyLoad> loads;
+std::vector<model::HourlyLoad> hours_of(int days, Load load_kW) {
+  std::vector<model::HourlyLoad> loads;
   for (int day = 0; day < days; ++day) {
     const Day date{sys_days{year{2021} / 1 / 4} + std::chrono::days{day}};
     for (int hour = 0; hour < 24; ++hour) {

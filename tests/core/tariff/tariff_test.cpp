@@ -24,8 +24,8 @@ Tariff day_and_night() {
 
 /// June 2021 at 10 kW, but for the hours that `is_blank` names.
 template <class IsBlank>
-std::vector<profile::HourlyLoad> june(IsBlank is_blank) {
-  std::vector<profile::HourlyLoad> hours;
+std::vector<model::HourlyLoad> june(IsBlank is_blank) {
+  std::vector<model::HourlyLoad> hours;
   for (unsigned day = 1; day <= 30; ++day) {
     for (int hour = 0; hour < 24; ++hour) {
       const metering::Day date = std::chrono::year{2021} / 6 / day;

@@ -172,5 +172,21 @@ TEST(WeatherSeries, FindsTheHourOfAnInstant) {
   EXPECT_EQ(series.find(series.end()), nullptr);
 }
 
+TEST(ContinuedWeather, TheLastWeekGoesOn) {
+  WeatherSeries series;
+  series.begin = std::chrono::sys_days{std::chrono::year{2026} / 1 / 1};
+  for (int i = 0; i < 20 * 24; ++i) series.hours.push_back({.dry_bulb_C = 1.0 * i});
+  const auto day = [&](int days) { return series.begin + std::chrono::hours{24 * days}; };
+  const auto longer = continued(series, day(2), day(12), day(31));
+  EXPECT_EQ(longer.begin, day(2));
+  EXPECT_EQ(longer.end(), day(31));
+  EXPECT_EQ(longer.find(day(11))->dry_bulb_C, 24.0 * 11);
+  EXPECT_EQ(longer.find(day(12))->dry_bulb_C, 24.0 * 5) << "what came later is not known yet";
+  EXPECT_EQ(longer.find(day(19))->dry_bulb_C, 24.0 * 5);
+  EXPECT_EQ(longer.find(day(20))->dry_bulb_C, 24.0 * 6);
+  EXPECT_EQ(continued(series, day(2), day(8), day(31)).end(), day(8)) << "less than a week";
+  EXPECT_TRUE(continued(series, day(30), day(31), day(32)).hours.empty());
+}
+
 }  // namespace
 }  // namespace recald::weather

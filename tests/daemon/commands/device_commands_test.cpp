@@ -8,7 +8,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "adapters/system/file_holders.hpp"
+#include "adapters/system/files/file_holders.hpp"
 #include "daemon/commands/meters/scan_bus.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/support/register_device.hpp"

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "adapters/sqlite/sqlite_store.hpp"
-#include "adapters/system/file_lock.hpp"
+#include "adapters/system/files/file_lock.hpp"
 #include "daemon/site/config/register_map_file.hpp"
 #include "daemon/version.hpp"
 #include "tests/adapters/http/raw_client.hpp"

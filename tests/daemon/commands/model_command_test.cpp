@@ -175,9 +175,9 @@ TEST_F(ModelCommand, CalibrationMeetsTheEffectsInForceOrTheirDamage) {
 }
 
 TEST(ActiveEffects, OnlyMonthsAfterTheDiagnosisTeach) {
-  EXPECT_FALSE(may_teach(night_setback(), year{2020} / 1));  // before its data: still the cut
-  EXPECT_FALSE(may_teach(night_setback(), year{2021} / 1));
-  EXPECT_TRUE(may_teach(night_setback(), year{2021} / 2));
+  EXPECT_FALSE(may_learn_from(night_setback(), year{2020} / 1));  // before its data: still the cut
+  EXPECT_FALSE(may_learn_from(night_setback(), year{2021} / 1));
+  EXPECT_TRUE(may_learn_from(night_setback(), year{2021} / 2));
 }
 
 TEST(ActiveEffects, MetaModelRefusesAnEffectThatItsDesignDidNotVary) {

@@ -11,7 +11,7 @@
 #include "adapters/ports/destination_cursors.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "adapters/sqlite/tables/schema.hpp"
-#include "adapters/system/file_lock.hpp"
+#include "adapters/system/files/file_lock.hpp"
 #include "daemon/gateway/upkeep/open_store.hpp"
 #include "daemon/site/config/site_config.hpp"
 #include "tests/daemon/command_line.hpp"

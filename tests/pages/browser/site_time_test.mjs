@@ -2,7 +2,7 @@
 // its clocks change.
 import assert from "node:assert/strict";
 
-import { SiteTime } from "../../../adapters/report/src/site_time.js";
+import { SiteTime } from "../../../adapters/views/src/site_time.js";
 
 const at = (text) => Date.parse(text) / 1000;
 const hour = 3600;

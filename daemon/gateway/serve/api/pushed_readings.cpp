@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/system/sha256.hpp"
+#include "adapters/system/files/sha256.hpp"
 #include "core/absent.hpp"
 #include "core/metering/months/validation.hpp"
 #include "daemon/gateway/ingest/json_depth.hpp"

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "adapters/report/format.hpp"
+#include "adapters/views/frame/format.hpp"
 #include "core/display/id_words.hpp"
 #include "daemon/gateway/serve/pages/page_frame.hpp"
 #include "daemon/gateway/serve/pages/pages.hpp"
@@ -15,9 +15,9 @@ namespace {
 
 using metering::MonthlyFigure;
 using metering::Validity;
-using report::Cell;
-using report::Html;
-using report::Table;
+using views::Cell;
+using views::Html;
+using views::Table;
 
 constexpr std::size_t kMonthsShown = 12;
 constexpr double kMeasuredWell = 0.9;
@@ -61,7 +61,7 @@ Cell measured_cell(const Figures& figures, metering::Month month) {
   const auto found = figures.find(month);
   if (found == figures.end()) return {"–", "number"};
   const MonthlyFigure& figure = found->second;
-  const std::string share = report::percent_text(figure.coverage);
+  const std::string share = views::percent_text(figure.coverage);
   if (!figure.usable) return {"✖ " + share, "number bad"};
   if (figure.coverage < kMeasuredWell) return {"▲ " + share, "number warn"};
   return {share, "number"};
@@ -75,7 +75,7 @@ void write_measured(Html& html, const std::vector<MeterData>& meters) {
   }
   Table table{"Share of each month that was measured"};
   std::vector<std::string> columns{"Meter"};
-  for (const metering::Month month : months) columns.push_back(report::month_text(month));
+  for (const metering::Month month : months) columns.push_back(views::month_text(month));
   table.with_labels().columns(std::move(columns));
   for (const MeterData& meter : meters) {
     std::vector<Cell> row{{meter.config->meter.id, "", "/meters/" + meter.config->meter.id}};
@@ -104,7 +104,7 @@ void write_validity(Html& html, const std::vector<MeterData>& meters) {
       found += figure->second.slots_by_validity[static_cast<std::size_t>(validity)];
     }
     const double share = slots > 0 ? static_cast<double>(found) / static_cast<double>(slots) : 0.0;
-    return Cell{slots > 0 ? report::percent_text(share) : "–", "number"};
+    return Cell{slots > 0 ? views::percent_text(share) : "–", "number"};
   };
   Table table{"The intervals of these months"};
   table.with_labels().columns(
@@ -156,10 +156,10 @@ void write_now(Html& html, const Served& served) {
                       static_cast<double>(all)
                 : 0.0;
     table.row({{meter.id, "", "/meters/" + meter.id},
-               {std::isnan(coverage) ? "–" : report::percent_text(coverage),
+               {std::isnan(coverage) ? "–" : views::percent_text(coverage),
                 coverage < kMeasuredWell ? "number warn" : "number"},
                {std::to_string(all), "number"},
-               {all > 0 ? report::percent_text(valid) : "–", "number"},
+               {all > 0 ? views::percent_text(valid) : "–", "number"},
                {doubts_of(meter)}});
   }
   table.write(html);

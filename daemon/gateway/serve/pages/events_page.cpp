@@ -12,8 +12,8 @@
 namespace recald::daemon {
 namespace {
 
-using report::Html;
-using report::Table;
+using views::Html;
+using views::Table;
 
 constexpr int kPageEvents = 200;
 constexpr std::array kSeverities{"info", "warning", "error"};

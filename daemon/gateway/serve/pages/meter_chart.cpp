@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "adapters/report/zoomable_chart.hpp"
+#include "adapters/views/frame/zoomable_chart.hpp"
 #include "core/display/unit.hpp"
 #include "daemon/gateway/serve/api/history.hpp"
 #include "daemon/gateway/serve/pages/page_frame.hpp"
@@ -24,7 +24,7 @@ std::string step_words(std::chrono::seconds step) {
 }
 
 /// Nothing if there is nothing to draw, which is then said.
-std::optional<History> history_of(report::Html& html, const Served& served,
+std::optional<History> history_of(views::Html& html, const Served& served,
                                   const metering::Meter& meter, const metering::TimeSpan& span) {
   const auto number = served.store.find_meter(meter.id);
   if (!number) {
@@ -46,13 +46,12 @@ std::optional<History> history_of(report::Html& html, const Served& served,
   return std::move(*history);
 }
 
-report::TimeChart chart_of(const metering::Meter& meter, const History& history,
-                           const metering::TimeSpan& span, const display::Unit& unit) {
-  report::TimeChart chart{
-      .title = fmt::format("{}, mean of {}", meter.id, step_words(history.step)),
-      .unit = unit.name,
-      .span = span,
-      .points = {}};
+views::TimeChart chart_of(const metering::Meter& meter, const History& history,
+                          const metering::TimeSpan& span, const display::Unit& unit) {
+  views::TimeChart chart{.title = fmt::format("{}, mean of {}", meter.id, step_words(history.step)),
+                         .unit = unit.name,
+                         .span = span,
+                         .points = {}};
   for (const HistoryPoint& point : history.points) {
     chart.points.push_back({point.start, unit.shown(point.least_kW), unit.shown(point.mean_kW),
                             unit.shown(point.most_kW), point.start + history.step});
@@ -67,12 +66,12 @@ struct Outside {
 };
 
 /// Puts the model's band in the place of the lowest and highest interval.
-Outside put_band(report::TimeChart& chart, const ExpectedMeter& expected,
+Outside put_band(views::TimeChart& chart, const ExpectedMeter& expected,
                  const display::Unit& unit) {
   const metering::Instant last = std::chrono::floor<std::chrono::hours>(chart.span.end);
   const metering::TimeSpan recent{last - std::chrono::hours{24}, last};  // whole hours
   Outside outside;
-  for (report::ChartPoint& point : chart.points) {
+  for (views::ChartPoint& point : chart.points) {
     const auto hour =
         std::ranges::lower_bound(expected.hours, point.start, {}, &ExpectedHour::start);
     point.low = point.high = point.mean;
@@ -90,17 +89,17 @@ Outside put_band(report::TimeChart& chart, const ExpectedMeter& expected,
 
 }  // namespace
 
-void write_expected_chart(report::Html& html, const Served& served, const metering::Meter& meter,
+void write_expected_chart(views::Html& html, const Served& served, const metering::Meter& meter,
                           const ExpectedMeter& expected, const metering::TimeSpan& span) {
   metering::Meter by_hours = meter;  // as the model has them
   by_hours.interval = std::max<std::chrono::seconds>(meter.interval, std::chrono::hours{1});
   const auto history = history_of(html, served, by_hours, span);
   if (!history) return;
   const display::Unit unit = display::unit_of(served.site.units, "kW", meter.utility);
-  report::TimeChart chart = chart_of(meter, *history, span, unit);
+  views::TimeChart chart = chart_of(meter, *history, span, unit);
   const Outside outside = put_band(chart, expected, unit);
   chart.title += "; the band is what the model of the drawings expects";
-  report::write_chart(html, chart, served.calendar);
+  views::write_chart(html, chart, served.calendar);
   constexpr int kFewestHours = 12;
   if (outside.of < kFewestHours) return;
   constexpr int kUsually = 10;  // one hour in ten is outside a 90 % band
@@ -113,7 +112,7 @@ void write_expected_chart(report::Html& html, const Served& served, const meteri
       is_much ? "warn" : "muted");
 }
 
-void write_meter_chart(report::Html& html, const Served& served, const metering::Meter& meter,
+void write_meter_chart(views::Html& html, const Served& served, const metering::Meter& meter,
                        const weather::SensorQuantity* quantity, const metering::TimeSpan& span,
                        ChartKind kind) {
   const auto history = history_of(html, served, meter, span);
@@ -121,18 +120,18 @@ void write_meter_chart(report::Html& html, const Served& served, const metering:
   const display::Unit unit = quantity != nullptr
                                  ? display::unit_of(served.site.units, quantity->unit)
                                  : display::unit_of(served.site.units, "kW", meter.utility);
-  const report::TimeChart chart = chart_of(meter, *history, span, unit);
+  const views::TimeChart chart = chart_of(meter, *history, span, unit);
   if (kind == ChartKind::zoomable) {
-    const report::FinerValues finer{.address = "/api/v1/history?meter=" + meter.id,
-                                    .interval = meter.interval,
-                                    .points = kChartPoints,
-                                    .factor = unit.factor,
-                                    .offset = unit.offset};
-    report::write_zoomable_chart(html, chart,
-                                 {.line = "Mean", .band = "Lowest and highest interval"}, finer,
-                                 served.calendar);
+    const views::FinerValues finer{.address = "/api/v1/history?meter=" + meter.id,
+                                   .interval = meter.interval,
+                                   .points = kChartPoints,
+                                   .factor = unit.factor,
+                                   .offset = unit.offset};
+    views::write_zoomable_chart(html, chart,
+                                {.line = "Mean", .band = "Lowest and highest interval"}, finer,
+                                served.calendar);
   } else {
-    report::write_chart(html, chart, served.calendar);
+    views::write_chart(html, chart, served.calendar);
   }
   if (history->step > meter.interval) {
     html.element("p",

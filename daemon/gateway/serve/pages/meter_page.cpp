@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "adapters/report/format.hpp"
+#include "adapters/views/frame/format.hpp"
 #include "core/display/unit.hpp"
 #include "daemon/gateway/serve/api/parameters.hpp"
 #include "daemon/gateway/serve/pages/meter_chart.hpp"
@@ -16,10 +16,10 @@
 namespace recald::daemon {
 namespace {
 
-using report::Html;
-using report::Table;
 using std::chrono::days;
 using std::chrono::sys_days;
+using views::Html;
+using views::Table;
 
 constexpr days kShownAtFirst{7};
 
@@ -90,12 +90,12 @@ void write_months_of(Html& html, const Served& served, const MeterConfig& config
       {"Month", "Daily average", "Peak", "When", "Measured", "Filled", "Used"});
   for (auto one = months->rbegin(); one != months->rend(); ++one) {
     const metering::MonthlyFigure& figure = one->figure;
-    table.row({{report::month_text(figure.month)},
-               {report::amount_text(figure.daily_average_kWh, units.daily), "number"},
-               {figure.peak ? report::amount_text(figure.peak->kW, units.power) : "–", "number"},
+    table.row({{views::month_text(figure.month)},
+               {views::amount_text(figure.daily_average_kWh, units.daily), "number"},
+               {figure.peak ? views::amount_text(figure.peak->kW, units.power) : "–", "number"},
                {figure.peak ? site_time_text(served.calendar, figure.peak->start) : "–"},
-               {report::percent_text(figure.coverage), "number"},
-               {report::percent_text(figure.filled_share), "number"},
+               {views::percent_text(figure.coverage), "number"},
+               {views::percent_text(figure.filled_share), "number"},
                {figure.usable ? "✔ yes" : "▲ no: " + figure.unusable_because,
                 figure.usable ? "good" : "warn"}});
   }

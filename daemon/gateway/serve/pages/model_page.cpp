@@ -4,16 +4,16 @@
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/models/model_store.hpp"
-#include "adapters/report/format.hpp"
+#include "adapters/views/frame/format.hpp"
 #include "daemon/gateway/serve/pages/page_frame.hpp"
 #include "daemon/gateway/serve/pages/pages.hpp"
 
 namespace recald::daemon {
 namespace {
 
-using report::Cell;
-using report::Html;
-using report::Table;
+using views::Cell;
+using views::Html;
+using views::Table;
 
 Cell version_state_cell(const diagnosis::ModelVersion& version, const std::string& active) {
   if (version.version == active) return {"✔ in force", "good"};
@@ -31,7 +31,7 @@ std::string made_text(const Served& served, const std::string& created_at) {
 void write_button(Html& html, std::string_view path, const nlohmann::json& body,
                   std::string_view text) {
   html.markup(fmt::format("<button type=\"button\" data-post=\"/api/v1/{}\" data-body=\"{}\">",
-                          path, report::escape(body.dump())))
+                          path, views::escape(body.dump())))
       .text(text)
       .markup("</button> ");
 }
@@ -78,7 +78,7 @@ void write_versions(Html& html, const Served& served, const Result<models::Versi
     std::string added;
     for (const diagnosis::AddedEffect& effect : version.effects) {
       added += fmt::format("{}{} ({})", added.empty() ? "" : ", ", effect.title,
-                           report::probability_text(effect.probability));
+                           views::probability_text(effect.probability));
     }
     table.row({{diagnosis::short_version(version.version)},
                version_state_cell(version, list->active),
@@ -93,7 +93,7 @@ void write_versions(Html& html, const Served& served, const Result<models::Versi
 
 http::Response model_page(const Served& served) {
   constexpr int kShown = 50;
-  report::Html html;
+  views::Html html;
   html.element("h1", "Model");
   if (!served.site.model) {
     html.element(

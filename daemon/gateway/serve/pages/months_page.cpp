@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "adapters/report/format.hpp"
-#include "adapters/report/zoomable_chart.hpp"
+#include "adapters/views/frame/format.hpp"
+#include "adapters/views/frame/zoomable_chart.hpp"
 #include "core/display/id_words.hpp"
 #include "core/display/unit.hpp"
 #include "daemon/gateway/serve/pages/page_frame.hpp"
@@ -14,8 +14,8 @@
 namespace recald::daemon {
 namespace {
 
-using report::Html;
-using report::Table;
+using views::Html;
+using views::Table;
 
 /// The first forecast of each month: the one from before its figure was known.
 std::map<std::string, std::vector<StoredForecast>> first_forecasts(
@@ -42,21 +42,21 @@ display::Unit unit_of_output(const Served& served, const std::string& output) {
 void write_chart_of(Html& html, const Served& served, const std::string& output,
                     const std::vector<StoredForecast>& months) {
   const display::Unit unit = unit_of_output(served, output);
-  report::TimeChart chart{.title = display::output_words(output) + ", forecast and measured",
-                          .unit = unit.name,
-                          .span = {served.calendar.month_span(months.front().month).begin,
-                                   served.calendar.month_span(months.back().month).end},
-                          .points = {},
-                          .marks = {}};
+  views::TimeChart chart{.title = display::output_words(output) + ", forecast and measured",
+                         .unit = unit.name,
+                         .span = {served.calendar.month_span(months.front().month).begin,
+                                  served.calendar.month_span(months.back().month).end},
+                         .points = {},
+                         .marks = {}};
   for (const StoredForecast& one : months) {
     const metering::TimeSpan span = served.calendar.month_span(one.month);
     chart.points.push_back(
         {span.begin, unit.shown(one.q05), unit.shown(one.mean), unit.shown(one.q95), span.end});
     chart.marks.push_back({span, unit.shown(one.measured)});
   }
-  report::write_zoomable_chart(html, chart,
-                               {.line = "Forecast", .band = "90 % of it", .mark = "Measured"},
-                               std::nullopt, served.calendar);
+  views::write_zoomable_chart(html, chart,
+                              {.line = "Forecast", .band = "90 % of it", .mark = "Measured"},
+                              std::nullopt, served.calendar);
 }
 
 void write_table_of(Html& html, const Served& served, const std::string& output,
@@ -68,10 +68,10 @@ void write_table_of(Html& html, const Served& served, const std::string& output,
   for (auto one = months.rbegin(); one != months.rend(); ++one) {
     const bool is_inside = one->q05 <= one->measured && one->measured <= one->q95;
     table.row(
-        {{report::month_text(one->month)},
-         {report::amount_text(one->measured, unit), "number"},
-         {report::amount_text(one->mean, unit), "number"},
-         {report::number_text(unit.shown(one->q05)) + " to " + report::amount_text(one->q95, unit),
+        {{views::month_text(one->month)},
+         {views::amount_text(one->measured, unit), "number"},
+         {views::amount_text(one->mean, unit), "number"},
+         {views::number_text(unit.shown(one->q05)) + " to " + views::amount_text(one->q95, unit),
           "number"},
          {is_inside ? "✔ yes" : "▲ no", is_inside ? "good" : "warn"},
          {site_time_text(served.calendar, one->made)}});

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adapters/report/format.hpp"
-#include "adapters/report/html.hpp"
+#include "adapters/views/frame/format.hpp"
+#include "adapters/views/frame/html.hpp"
 #include "core/absent.hpp"
 #include "core/display/unit.hpp"
 #include "core/text/number_text.hpp"
@@ -17,9 +17,9 @@
 namespace recald::daemon {
 namespace {
 
-using report::Cell;
-using report::Html;
-using report::Table;
+using views::Cell;
+using views::Html;
+using views::Table;
 
 constexpr int kEventsShown = 20;
 constexpr int kJobsShown = 3;
@@ -62,9 +62,9 @@ std::string value_text(const MeterStatus* status, metering::Utility utility,
   if (status == nullptr) return "–";
   if (!status->weather.empty()) return weather_text(status->weather, system);
   const display::Unit power = display::unit_of(system, "kW", utility);
-  if (status->live.power_kW) return report::amount_text(*status->live.power_kW, power);
+  if (status->live.power_kW) return views::amount_text(*status->live.power_kW, power);
   if (!status->last_interval) return "–";
-  return report::amount_text(status->last_interval->mean_kW, power);
+  return views::amount_text(status->last_interval->mean_kW, power);
 }
 
 Cell last_interval_cell(const MeterStatus* status, const Served& served) {
@@ -83,7 +83,7 @@ Cell last_interval_cell(const MeterStatus* status, const Served& served) {
 Cell coverage_cell(const MeterStatus* status) {
   if (status == nullptr || std::isnan(status->open_month_coverage)) return {"–", "number"};
   const double coverage = status->open_month_coverage;
-  return {(coverage < kCoverageGood ? "▲ " : "") + report::percent_text(coverage),
+  return {(coverage < kCoverageGood ? "▲ " : "") + views::percent_text(coverage),
           coverage < kCoverageGood ? "number warn" : "number"};
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "adapters/report/assets.hpp"
-#include "adapters/report/format.hpp"
-#include "adapters/report/zoomable_chart.hpp"
+#include "adapters/views/frame/assets.hpp"
+#include "adapters/views/frame/format.hpp"
+#include "adapters/views/frame/zoomable_chart.hpp"
 #include "core/display/id_words.hpp"
 #include "daemon/gateway/serve/pages/page_script.hpp"
 #include "daemon/gateway/serve/pages/page_style.hpp"
@@ -19,9 +19,9 @@ namespace recald::daemon {
 namespace {
 
 using metering::Instant;
-using report::Cell;
-using report::Html;
-using report::Table;
+using views::Cell;
+using views::Html;
+using views::Table;
 
 constexpr std::array kSitePages{PageLink{"/", "Now"}, PageLink{"/months", "Months"},
                                 PageLink{"/model", "Model"}, PageLink{"/data", "Data"},
@@ -78,7 +78,7 @@ http::Response framed_page(const PageFrame& frame, const Html& main) {
   write_links(html, "Pages", frame.pages, frame.here);
   html.markup("</header><main>").markup(main.str()).markup("</main>");
   // Text is escaped, so no other text can look like this.
-  if (main.str().find(report::kZoomableMarkup) != std::string::npos) {
+  if (main.str().find(views::kZoomableMarkup) != std::string::npos) {
     html.markup("<script src=\"/charts.js\" defer></script>");
   }
   html.markup("<footer>");
@@ -114,7 +114,7 @@ http::Response page_script(const Served&) {
 
 http::Response charts_script(const Served&) {
   return kept({.content_type = "text/javascript; charset=utf-8",
-               .body = std::string{report::assets().charts}});
+               .body = std::string{views::assets().charts}});
 }
 
 std::string site_time_text(const metering::LocalCalendar& calendar, Instant t) {
@@ -188,7 +188,7 @@ void write_job_now(Html& html, const Served& served) {
         fmt::format("A {} has been running for {}", recald::name_of(job.kind), age_text(since));
     const auto progress = served.progress ? served.progress() : std::nullopt;
     if (progress && progress->job == job.number) {
-      text += fmt::format(": {} ({})", report::percent_text(progress->share, 0), progress->what);
+      text += fmt::format(": {} ({})", views::percent_text(progress->share, 0), progress->what);
       constexpr double kEnoughToTell = 0.05;
       if (progress->share >= kEnoughToTell) {
         const double left_s =
@@ -212,7 +212,7 @@ void write_alarms(Html& html, const Served& served) {
     std::string causes;
     for (const AlarmCause& cause : alarm.causes) {
       if (!causes.empty()) causes += "; ";
-      causes += fmt::format("{} {}", report::probability_text(cause.probability), cause.words);
+      causes += fmt::format("{} {}", views::probability_text(cause.probability), cause.words);
     }
     table.row({{alarm.since},
                {display::capitalised(display::output_words(alarm.output))},

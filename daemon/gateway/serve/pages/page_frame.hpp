@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "adapters/report/html.hpp"
+#include "adapters/views/frame/html.hpp"
 #include "daemon/gateway/serve/api/served.hpp"
 
 namespace recald::daemon {
@@ -26,7 +26,7 @@ struct PageFrame {
   std::span<const PageLink> for_programs;
 };
 
-[[nodiscard]] http::Response framed_page(const PageFrame& frame, const report::Html& main);
+[[nodiscard]] http::Response framed_page(const PageFrame& frame, const views::Html& main);
 
 /// In the order of the links to them.
 enum class PageKind : std::uint8_t { now, months, model, data, events, other };
@@ -34,7 +34,7 @@ enum class PageKind : std::uint8_t { now, months, model, data, events, other };
 /// A page with the site's name above and `main` in the middle.
 /// @param title  Of the window: "Months"; empty: the site's name alone.
 [[nodiscard]] http::Response page_of(const Served& served, PageKind kind, const std::string& title,
-                                     const report::Html& main);
+                                     const views::Html& main);
 
 /// "2026-03-29 03:15 +02:00", in the site's local time.
 [[nodiscard]] std::string site_time_text(const metering::LocalCalendar& calendar,
@@ -44,19 +44,19 @@ enum class PageKind : std::uint8_t { now, months, model, data, events, other };
 [[nodiscard]] std::string age_text(std::chrono::seconds age);
 
 /// A sign beside each word, so that the meaning never depends on colour alone.
-[[nodiscard]] report::Cell severity_cell(Severity severity);
+[[nodiscard]] views::Cell severity_cell(Severity severity);
 
 /// Where a file of a job is served.
 [[nodiscard]] std::string file_address(const StoredJob& job, std::string_view file);
 
 /// The job that runs or waits, and how far it is.
-void write_job_now(report::Html& html, const Served& served);
+void write_job_now(views::Html& html, const Served& served);
 
 /// The calibrations or diagnoses, newest first; nothing if there are none.
-void write_jobs(report::Html& html, const Served& served, JobKind kind, std::string caption,
+void write_jobs(views::Html& html, const Served& served, JobKind kind, std::string caption,
                 int limit);
 
 /// Alarms from the months after the calibration in use; nothing if there are none.
-void write_alarms(report::Html& html, const Served& served);
+void write_alarms(views::Html& html, const Served& served);
 
 }  // namespace recald::daemon

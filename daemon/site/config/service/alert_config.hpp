@@ -1,4 +1,4 @@
-/// Who is told when something happens, as a site file says it.
+/// Who is notified when something happens, as a site file says it.
 #pragma once
 
 #include <chrono>

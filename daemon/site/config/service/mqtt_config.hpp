@@ -1,4 +1,5 @@
-/// What a broker of MQTT is told, and what of a [[meter]] belongs to it, as a site file says it.
+/// What is published to an MQTT broker, and what of a [[meter]] belongs to it, as a site file says
+/// it.
 #pragma once
 
 #include <chrono>

@@ -108,7 +108,7 @@ ModbusConfig read_modbus(TomlReader& table) {
   auto endpoint = parse_endpoint(listen);
   if (endpoint && endpoint->address == "localhost") endpoint->address = "127.0.0.1";
   if (listen.empty()) {
-    // told already
+    // reported already
   } else if (!endpoint || !is_ip_address(endpoint->address)) {
     table.problem_at("listen",
                      fmt::format("'listen' is \"{}\"; write the IP address of an interface and a "

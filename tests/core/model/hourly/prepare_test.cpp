@@ -23,7 +23,7 @@ TEST(FitProfileWithoutPlant, FindsTheLoadsBesideAnOwnChiller) {
   const MeterMap electricity = *default_meter_map(metering::Utility::electricity);
   Eigen::ArrayXXd power_kW(hourly.step_count(), 1);
   hourly.run(building, {}, {&electricity, 1}, power_kW);
-  std::vector<profile::HourlyLoad> loads;
+  std::vector<model::HourlyLoad> loads;
   for (std::size_t i = 0; i < drivers->hours.size(); ++i) {
     const DriverHour& hour = drivers->hours[i];
     if (!loads.empty() && loads.back().date == hour.date && loads.back().hour == hour.local_hour) {

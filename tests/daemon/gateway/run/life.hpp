@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/gateway/upkeep/open_store.hpp"

@@ -7,7 +7,7 @@
 
 #include "adapters/http/dress.hpp"
 #include "adapters/models/model_store.hpp"
-#include "adapters/system/write_file.hpp"
+#include "adapters/system/files/write_file.hpp"
 #include "daemon/gateway/serve/api/readiness.hpp"
 #include "daemon/gateway/serve/pages/page_frame.hpp"
 #include "tests/daemon/gateway/serve/served_site.hpp"

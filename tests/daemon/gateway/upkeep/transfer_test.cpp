@@ -4,7 +4,7 @@
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/sqlite/sqlite_store.hpp"
-#include "adapters/system/file_lock.hpp"
+#include "adapters/system/files/file_lock.hpp"
 #include "adapters/system/time_zone_release.hpp"
 #include "tests/daemon/command_line.hpp"
 #include "tests/daemon/gateway/gateway_rig.hpp"

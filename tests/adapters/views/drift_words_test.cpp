@@ -1,0 +1,109 @@
+#include "adapters/views/drift/drift_words.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "core/absent.hpp"
+
+namespace recald::views {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+drift::Cause named(const std::string& effect, const std::string& title, double probability) {
+  return {.kind = drift::CauseKind::effect,
+          .probability = probability,
+          .mean = kAbsent,
+          .q05 = kAbsent,
+          .q95 = kAbsent,
+          .effect = effect,
+          .title = title};
+}
+
+/// Two years, at the end of which chilled water rose; heat has been off since.
+class DriftWords : public ::testing::Test {
+ protected:
+  DriftWords() {
+    for (int month = 0; month < 24; ++month) {
+      drift_.months.push_back(fmt::format("{}-{:02}", 2021 + month / 12, 1 + month % 12));
+    }
+    drift_.learning_months = 12;
+    const auto output = [&](const char* meter, metering::Utility utility, double rest) {
+      drift::FollowedOutput one{.name = std::string{meter} + "_daily_kWh",
+                                .meter = meter,
+                                .unit = "kWh/day",
+                                .utility = utility,
+                                .by_level = false,
+                                .measured = std::vector<double>(24, 100.0),
+                                .state = {}};
+      for (int month = 18; month < 21; ++month)
+        one.measured[static_cast<std::size_t>(month)] = rest;
+      drift_.outputs.push_back(one);
+    };
+    output("chilled_water", metering::Utility::chilled_water, 130.0);
+    output("heat", metering::Utility::heating, 5.0);
+    alarm_.alarm = {.month = 19,
+                    .output = 0,
+                    .direction = 1,
+                    .evidence = 1000.0,
+                    .since = 18,
+                    .since_earliest = 18,
+                    .since_latest = 18,
+                    .is_calibrated = true};
+    alarm_.explained_until = 20;
+  }
+
+  [[nodiscard]] std::string said(std::vector<drift::Cause> causes) {
+    alarm_.causes = std::move(causes);
+    return explained_sentence(drift_, alarm_);
+  }
+
+  drift::SiteDrift drift_{};
+  drift::ExplainedAlarm alarm_{};
+};
+
+TEST_F(DriftWords, AnOpenAlarmSaysWhatTellsItsCausesApartAndToWait) {
+  const std::string words =
+      said({named("outdoor_air_amount", "Minimum outdoor air too high or too low", 0.5),
+            named("deep_drying", "Deep drying", 0.4)});
+  EXPECT_THAT(words, HasSubstr("Likeliest cause (50 %): Minimum outdoor air too high or too low; "
+                               "next (40 %): Deep drying."));
+  EXPECT_THAT(words, HasSubstr("What tells them apart: Heat in winter"));
+  EXPECT_THAT(words, HasSubstr("Wait until heating begins: its months will tell more."));
+  EXPECT_THAT(words, Not(HasSubstr("cooling begins")));
+}
+
+TEST_F(DriftWords, ASettledOneDoesNot) {
+  const std::string words =
+      said({named("outdoor_air_amount", "Minimum outdoor air too high or too low", 0.9),
+            named("deep_drying", "Deep drying", 0.1)});
+  EXPECT_THAT(words, Not(HasSubstr("tells them apart")));
+  EXPECT_THAT(words, Not(HasSubstr("Wait")));
+}
+
+TEST_F(DriftWords, APlantThatRunsIsNotWaitedFor) {
+  drift_.outputs[1].measured.assign(24, 100.0);
+  EXPECT_THAT(said({named("outdoor_air_amount", "Minimum outdoor air too high or too low", 0.5),
+                    named("server_room", "Unlisted server room", 0.4)}),
+              Not(HasSubstr("Wait")));
+}
+
+TEST_F(DriftWords, AMeterIsToldWithItsFactorAndWhatTheHoursCallIt) {
+  const drift::Cause meter{.kind = drift::CauseKind::meter,
+                           .index = 0,
+                           .probability = 0.9,
+                           .mean = 0.667,
+                           .q05 = 0.65,
+                           .q95 = 0.68,
+                           .effect = "phase_lost",
+                           .title = "Meter has lost or reversed a phase"};
+  EXPECT_THAT(said({meter, named("vacancy", "Vacancy", 0.1)}),
+              HasSubstr("the chilled water meter shows 0.667 times what it should (90 %: 0.65 to "
+                        "0.68); by its hours: Meter has lost or reversed a phase"));
+}
+
+}  // namespace
+}  // namespace recald::views
