@@ -15,7 +15,7 @@ bool has_object(const Json& model, std::string_view type) {
 std::size_t scale(Json& model, std::string_view type,
                   std::initializer_list<std::string_view> fields, double factor) {
   std::size_t count = 0;
-  for_each_object(model, type, [&](const std::string& /*name*/, Json& object) {
+  for_each_object(model, type, [&](Json& object) {
     for (const std::string_view field : fields) {
       const auto at = object.find(std::string{field});
       if (at == object.end() || !at->is_number()) continue;
@@ -56,7 +56,7 @@ std::size_t scale_outdoor_air(Json& model, double factor) {
             {"maximum_outdoor_air_flow_rate", "cooling_outdoor_air_flow_rate",
              "heating_outdoor_air_flow_rate", "no_load_outdoor_air_flow_rate"},
             factor);
-  for_each_object(model, "Controller:OutdoorAir", [](const std::string& /*name*/, Json& of) {
+  for_each_object(model, "Controller:OutdoorAir", [](Json& of) {
     const Json& most = of["maximum_outdoor_air_flow_rate"];
     Json& least = of["minimum_outdoor_air_flow_rate"];
     // No more than all of the air.
@@ -88,23 +88,21 @@ std::size_t scale_cooling_cop(Json& model, double factor) {
 
 std::size_t scale_solar_gain(Json& model, double factor) {
   std::size_t count = 0;
-  for_each_object(model, "WindowMaterial:SimpleGlazingSystem",
-                  [&](const std::string& /*name*/, Json& glazing) {
-                    constexpr double kMost = 0.87;
-                    Json& gain = glazing["solar_heat_gain_coefficient"];
-                    gain = std::min(factor * gain.get<double>(), kMost);
-                    ++count;
-                  });
+  for_each_object(model, "WindowMaterial:SimpleGlazingSystem", [&](Json& glazing) {
+    constexpr double kMost = 0.87;
+    Json& gain = glazing["solar_heat_gain_coefficient"];
+    gain = std::min(factor * gain.get<double>(), kMost);
+    ++count;
+  });
   return count;
 }
 
 std::string add_zone_list(Json& model) {
   constexpr const char* kName = "All zones that are kept warm";
   Json zones = Json::array();
-  for_each_object(model, "ZoneHVAC:EquipmentConnections",
-                  [&](const std::string& /*name*/, const Json& connections) {
-                    zones.push_back({{"zone_name", connections.value("zone_name", "")}});
-                  });
+  for_each_object(model, "ZoneHVAC:EquipmentConnections", [&](const Json& connections) {
+    zones.push_back({{"zone_name", connections.value("zone_name", "")}});
+  });
   model["ZoneList"][kName]["zones"] = std::move(zones);
   return kName;
 }

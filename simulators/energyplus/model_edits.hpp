@@ -3,21 +3,37 @@
 
 #include <initializer_list>
 #include <string_view>
+#include <type_traits>
 
 #include "simulators/energyplus/building_year.hpp"
 
 namespace recald::simulators::energyplus {
 
-/// `visit(name, object)` for all objects whose type begins so. @param model  `Json`, const or not
+/// `visit(name, object)` or `visit(object)` for all objects whose type begins so. @param model
+/// `Json`, const or not
 template <class Model, class Visit>
 void for_each_object(Model& model, std::string_view type, const Visit& visit) {
   for (auto& [of, objects] : model.items()) {
     if (!of.starts_with(type)) continue;
-    for (auto& [name, object] : objects.items()) visit(name, object);
+    for (auto& [name, object] : objects.items()) {
+      if constexpr (std::is_invocable_v<Visit, decltype(name), decltype(object)>) {
+        visit(name, object);
+      } else {
+        visit(object);
+      }
+    }
   }
 }
 
 [[nodiscard]] bool has_object(const Json& model, std::string_view type);
+
+/// Whether `holds(object)` for any of them.
+template <class Holds>
+bool has_object(const Json& model, std::string_view type, const Holds& holds) {
+  bool found = false;
+  for_each_object(model, type, [&](const Json& object) { found |= holds(object); });
+  return found;
+}
 
 /// Multiplies numbers; what is left to EnergyPlus stays so. @return how many
 std::size_t scale(Json& model, std::string_view type,

@@ -36,10 +36,9 @@ constexpr Spread kSpreads[] = {
 
 void scale_glazing_u(Json& model, double factor) {
   constexpr double kMost_W_m2K = 7.0;
-  for_each_object(
-      model, "WindowMaterial:SimpleGlazingSystem", [&](const std::string& /*name*/, Json& glazing) {
-        glazing["u_factor"] = std::min(factor * glazing["u_factor"].get<double>(), kMost_W_m2K);
-      });
+  for_each_object(model, "WindowMaterial:SimpleGlazingSystem", [&](Json& glazing) {
+    glazing["u_factor"] = std::min(factor * glazing["u_factor"].get<double>(), kMost_W_m2K);
+  });
 }
 
 /// Layers that insulate, with and without mass.

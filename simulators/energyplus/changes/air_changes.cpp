@@ -13,13 +13,9 @@ bool takes_outdoor_air(const BuildingYear& building) {
 
 /// The flows that a handler's controller moves between are known.
 bool has_damper(const BuildingYear& building) {
-  bool found = false;
-  for_each_object(building.model(), "Controller:OutdoorAir",
-                  [&](const std::string& /*name*/, const Json& object) {
-                    found |= object.contains("maximum_outdoor_air_flow_rate") &&
-                             object["maximum_outdoor_air_flow_rate"].is_number();
-                  });
-  return found;
+  return has_object(building.model(), "Controller:OutdoorAir", [](const Json& object) {
+    return object.value("maximum_outdoor_air_flow_rate", Json()).is_number();
+  });
 }
 
 bool has_scheduled_outdoor_air(const BuildingYear& building) {
@@ -27,22 +23,15 @@ bool has_scheduled_outdoor_air(const BuildingYear& building) {
 }
 
 bool has_economiser(const BuildingYear& building) {
-  bool found = false;
-  for_each_object(building.model(), "Controller:OutdoorAir",
-                  [&](const std::string& /*name*/, const Json& object) {
-                    found |=
-                        object.value("economizer_control_type", "NoEconomizer") != "NoEconomizer";
-                  });
-  return found;
+  return has_object(building.model(), "Controller:OutdoorAir", [](const Json& object) {
+    return object.value("economizer_control_type", "NoEconomizer") != "NoEconomizer";
+  });
 }
 
 bool has_fixed_changeover(const BuildingYear& building) {
-  bool found = false;
-  for_each_object(building.model(), "Controller:OutdoorAir",
-                  [&](const std::string& /*name*/, const Json& object) {
-                    found |= object.value("economizer_control_type", "") == "FixedDryBulb";
-                  });
-  return found;
+  return has_object(building.model(), "Controller:OutdoorAir", [](const Json& object) {
+    return object.value("economizer_control_type", "") == "FixedDryBulb";
+  });
 }
 
 bool has_slowing_fans(const BuildingYear& building) {
@@ -76,16 +65,15 @@ void outdoor_air_amount(BuildingYear& building, double share, Rng /*rng*/) {
 }
 
 void damper_stuck_open(BuildingYear& building, double share, Rng /*rng*/) {
-  for_each_object(building.model(), "Controller:OutdoorAir",
-                  [&](const std::string& /*name*/, Json& controller) {
-                    const Json most = controller.value("maximum_outdoor_air_flow_rate", Json());
-                    const Json least = controller.value("minimum_outdoor_air_flow_rate", Json());
-                    if (!most.is_number() || !least.is_number()) return;
-                    controller["minimum_outdoor_air_flow_rate"] =
-                        std::max(least.get<double>(), share * most.get<double>());
-                    // A share of what is supplied, however much that is.
-                    controller["minimum_limit_type"] = "ProportionalMinimum";
-                  });
+  for_each_object(building.model(), "Controller:OutdoorAir", [&](Json& controller) {
+    const Json most = controller.value("maximum_outdoor_air_flow_rate", Json());
+    const Json least = controller.value("minimum_outdoor_air_flow_rate", Json());
+    if (!most.is_number() || !least.is_number()) return;
+    controller["minimum_outdoor_air_flow_rate"] =
+        std::max(least.get<double>(), share * most.get<double>());
+    // A share of what is supplied, however much that is.
+    controller["minimum_limit_type"] = "ProportionalMinimum";
+  });
   building.change(Role::outdoor_air, [](std::size_t, std::size_t, double) { return 1.0; });
 }
 
@@ -98,19 +86,17 @@ void demand_ventilation(BuildingYear& building, double share, Rng /*rng*/) {
 }
 
 void economiser_failed(BuildingYear& building, double /*share*/, Rng /*rng*/) {
-  for_each_object(building.model(), "Controller:OutdoorAir",
-                  [&](const std::string& /*name*/, Json& controller) {
-                    controller["economizer_control_type"] = "NoEconomizer";
-                  });
+  for_each_object(building.model(), "Controller:OutdoorAir", [&](Json& controller) {
+    controller["economizer_control_type"] = "NoEconomizer";
+  });
 }
 
 void economiser_changeover(BuildingYear& building, double shift_K, Rng /*rng*/) {
-  for_each_object(building.model(), "Controller:OutdoorAir",
-                  [&](const std::string& /*name*/, Json& controller) {
-                    if (controller.value("economizer_control_type", "") != "FixedDryBulb") return;
-                    Json& limit = controller["economizer_maximum_limit_dry_bulb_temperature"];
-                    limit = limit.get<double>() + shift_K;
-                  });
+  for_each_object(building.model(), "Controller:OutdoorAir", [&](Json& controller) {
+    if (controller.value("economizer_control_type", "") != "FixedDryBulb") return;
+    Json& limit = controller["economizer_maximum_limit_dry_bulb_temperature"];
+    limit = limit.get<double>() + shift_K;
+  });
 }
 
 /// A curve of part load that leans towards full power at all loads.
@@ -123,31 +109,29 @@ void lean_to_full(Json& object, const char* first, std::initializer_list<const c
 }
 
 void constant_speed_fans(BuildingYear& building, double share, Rng /*rng*/) {
-  for_each_object(building.model(), "Fan:VariableVolume",
-                  [&](const std::string& /*name*/, Json& fan) {
-                    lean_to_full(fan, "fan_power_coefficient_1",
-                                 {"fan_power_coefficient_2", "fan_power_coefficient_3",
-                                  "fan_power_coefficient_4", "fan_power_coefficient_5"},
-                                 share);
-                  });
+  for_each_object(building.model(), "Fan:VariableVolume", [&](Json& fan) {
+    lean_to_full(fan, "fan_power_coefficient_1",
+                 {"fan_power_coefficient_2", "fan_power_coefficient_3", "fan_power_coefficient_4",
+                  "fan_power_coefficient_5"},
+                 share);
+  });
 }
 
 void constant_flow_pumps(BuildingYear& building, double share, Rng /*rng*/) {
-  for_each_object(building.model(), "Pump:", [&](const std::string& /*name*/, Json& pump) {
+  for_each_object(building.model(), "Pump:", [&](Json& pump) {
     if (share > 0.5) pump["pump_control_type"] = "Continuous";
   });
-  for_each_object(building.model(), "Pump:VariableSpeed",
-                  [&](const std::string& /*name*/, Json& pump) {
-                    // What is left out is a straight line through nothing.
-                    if (!pump.contains("coefficient_2_of_the_part_load_performance_curve")) {
-                      pump["coefficient_2_of_the_part_load_performance_curve"] = 1.0;
-                    }
-                    lean_to_full(pump, "coefficient_1_of_the_part_load_performance_curve",
-                                 {"coefficient_2_of_the_part_load_performance_curve",
-                                  "coefficient_3_of_the_part_load_performance_curve",
-                                  "coefficient_4_of_the_part_load_performance_curve"},
-                                 share);
-                  });
+  for_each_object(building.model(), "Pump:VariableSpeed", [&](Json& pump) {
+    // What is left out is a straight line through nothing.
+    if (!pump.contains("coefficient_2_of_the_part_load_performance_curve")) {
+      pump["coefficient_2_of_the_part_load_performance_curve"] = 1.0;
+    }
+    lean_to_full(pump, "coefficient_1_of_the_part_load_performance_curve",
+                 {"coefficient_2_of_the_part_load_performance_curve",
+                  "coefficient_3_of_the_part_load_performance_curve",
+                  "coefficient_4_of_the_part_load_performance_curve"},
+                 share);
+  });
 }
 
 void deep_drying(BuildingYear& building, double colder_K, Rng /*rng*/) {
@@ -189,60 +173,19 @@ void supply_reset_missing(BuildingYear& building, double colder_K, Rng /*rng*/) 
 }  // namespace
 
 void add_air_changes(std::vector<HiddenChange>& all) {
-  all.insert(all.end(), {{.id = "outdoor_air_amount",
-                          .least = -0.6,
-                          .most = 1.5,
-                          .dated = true,
-                          .possible = takes_outdoor_air,
-                          .apply = outdoor_air_amount},
-                         {.id = "damper_stuck_open",
-                          .least = 0.25,
-                          .most = 0.9,
-                          .possible = has_damper,
-                          .apply = damper_stuck_open},
-                         {.id = "demand_ventilation",
-                          .least = 0.3,
-                          .most = 1.0,
-                          .possible = has_scheduled_outdoor_air,
-                          .apply = demand_ventilation},
-                         {.id = "economiser_failed",
-                          .least = 1.0,
-                          .most = 1.0,
-                          .possible = has_economiser,
-                          .apply = economiser_failed},
-                         {.id = "economiser_changeover",
-                          .least = -8.0,
-                          .most = 8.0,
-                          .possible = has_fixed_changeover,
-                          .apply = economiser_changeover},
-                         {.id = "constant_speed_fans",
-                          .least = 0.3,
-                          .most = 1.0,
-                          .possible = has_slowing_fans,
-                          .apply = constant_speed_fans},
-                         {.id = "constant_flow_pumps",
-                          .least = 0.3,
-                          .most = 1.0,
-                          .possible = has_slowing_pumps,
-                          .apply = constant_flow_pumps},
-                         {.id = "deep_drying",
-                          .least = 1.0,
-                          .most = 4.0,
-                          .unit = "K",
-                          .possible = has_supply_schedule,
-                          .apply = deep_drying},
-                         {.id = "simultaneous_heating_cooling",
-                          .least = 0.5,
-                          .most = 15.0,
-                          .unit = "W/m2 of floor",
-                          .possible = has_heaters_in_cold_air,
-                          .apply = simultaneous_heating_cooling},
-                         {.id = "supply_reset_missing",
-                          .least = 1.0,
-                          .most = 4.0,
-                          .unit = "K",
-                          .possible = has_reset,
-                          .apply = supply_reset_missing}});
+  all.insert(all.end(),
+             {{"outdoor_air_amount", -0.6, 1.5, "", takes_outdoor_air, outdoor_air_amount,
+               Course::at_once, kDated},
+              {"damper_stuck_open", 0.25, 0.9, "", has_damper, damper_stuck_open},
+              {"demand_ventilation", 0.3, 1.0, "", has_scheduled_outdoor_air, demand_ventilation},
+              {"economiser_failed", 1.0, 1.0, "", has_economiser, economiser_failed},
+              {"economiser_changeover", -8.0, 8.0, "", has_fixed_changeover, economiser_changeover},
+              {"constant_speed_fans", 0.3, 1.0, "", has_slowing_fans, constant_speed_fans},
+              {"constant_flow_pumps", 0.3, 1.0, "", has_slowing_pumps, constant_flow_pumps},
+              {"deep_drying", 1.0, 4.0, "K", has_supply_schedule, deep_drying},
+              {"simultaneous_heating_cooling", 0.5, 15.0, "W/m2 of floor", has_heaters_in_cold_air,
+               simultaneous_heating_cooling},
+              {"supply_reset_missing", 1.0, 4.0, "K", has_reset, supply_reset_missing}});
 }
 
 }  // namespace recald::simulators::energyplus::changes

@@ -14,7 +14,7 @@ double lamps_W_m2_of(const Json& model) {
   constexpr double kUsual_W_m2 = 9.0;
   double sum_W_m2 = 0.0;
   double count = 0.0;
-  for_each_object(model, "Lights", [&](const std::string& /*name*/, const Json& lamps) {
+  for_each_object(model, "Lights", [&](const Json& lamps) {
     const double of_floor_W_m2 = lamps.value("watts_per_floor_area", 0.0);
     if (of_floor_W_m2 <= 0.0) return;
     sum_W_m2 += of_floor_W_m2;
@@ -63,31 +63,12 @@ void server_room(BuildingYear& building, double W_m2, Rng /*rng*/) {
 }  // namespace
 
 void add_electrical_changes(std::vector<HiddenChange>& all) {
-  all.insert(all.end(), {{.id = "equipment_step",
-                          .least = -5.0,
-                          .most = 8.0,
-                          .unit = "W/m2 of floor",
-                          .dated = true,
-                          .possible = has_lights,
-                          .apply = equipment_step},
-                         {.id = "exterior_lighting",
-                          .least = 0.3,
-                          .most = 5.0,
-                          .unit = "W/m2 of floor",
-                          .possible = always,
-                          .apply = exterior_lighting},
-                         {.id = "plug_growth",
-                          .least = -0.2,
-                          .most = 0.4,
-                          .course = Course::steadily,
-                          .possible = has_equipment,
-                          .apply = plug_growth},
-                         {.id = "server_room",
-                          .least = 0.3,
-                          .most = 8.0,
-                          .unit = "W/m2 of floor",
-                          .possible = always,
-                          .apply = server_room}});
+  all.insert(all.end(),
+             {{"equipment_step", -5.0, 8.0, "W/m2 of floor", has_lights, equipment_step,
+               Course::at_once, kDated},
+              {"exterior_lighting", 0.3, 5.0, "W/m2 of floor", always, exterior_lighting},
+              {"plug_growth", -0.2, 0.4, "", has_equipment, plug_growth, Course::steadily},
+              {"server_room", 0.3, 8.0, "W/m2 of floor", always, server_room}});
 }
 
 }  // namespace recald::simulators::energyplus::changes

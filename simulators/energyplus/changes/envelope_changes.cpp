@@ -23,16 +23,15 @@ void ground_coupling(BuildingYear& building, double share, Rng /*rng*/) {
   constexpr std::array kMonths{"january",   "february", "march",    "april",
                                "may",       "june",     "july",     "august",
                                "september", "october",  "november", "december"};
-  for_each_object(building.model(), "Site:GroundTemperature:BuildingSurface",
-                  [&](const std::string& /*name*/, Json& ground) {
-                    for (std::size_t month = 0; month < kMonths.size(); ++month) {
-                      const double phase = 2.0 * std::numbers::pi *
-                                           (static_cast<double>(month) - kColdestMonth) / 12.0;
-                      Json& value = ground[std::string{kMonths[month]} + "_ground_temperature"];
-                      const double mean_C = value.is_number() ? value.get<double>() : 18.0;
-                      value = mean_C - share * kSwing_K * std::cos(phase);
-                    }
-                  });
+  for_each_object(building.model(), "Site:GroundTemperature:BuildingSurface", [&](Json& ground) {
+    for (std::size_t month = 0; month < kMonths.size(); ++month) {
+      const double phase =
+          2.0 * std::numbers::pi * (static_cast<double>(month) - kColdestMonth) / 12.0;
+      Json& value = ground[std::string{kMonths[month]} + "_ground_temperature"];
+      const double mean_C = value.is_number() ? value.get<double>() : 18.0;
+      value = mean_C - share * kSwing_K * std::cos(phase);
+    }
+  });
   for_each_object(building.model(), "Material:NoMass", [&](const std::string& name, Json& layer) {
     if (name != "Ground insulation") return;
     layer["thermal_resistance"] = (1.0 - 0.9 * share) * layer["thermal_resistance"].get<double>();
@@ -88,33 +87,14 @@ void thermal_mass(BuildingYear& building, double share, Rng /*rng*/) {
 }  // namespace
 
 void add_envelope_changes(std::vector<HiddenChange>& all) {
-  all.insert(all.end(), {{.id = "ground_coupling",
-                          .least = 0.4,
-                          .most = 1.0,
-                          .possible = has_ground,
-                          .apply = ground_coupling},
-                         {.id = "solar_gain_change",
-                          .least = -0.7,
-                          .most = 0.7,
-                          .possible = has_simple_windows,
-                          .apply = solar_gain_change},
-                         {.id = "stack_infiltration",
-                          .least = 0.05,
-                          .most = 1.0,
-                          .unit = "m3/s at 20 K for each 1000 m2 of floor",
-                          .possible = always,
-                          .apply = stack_infiltration},
-                         {.id = "wind_infiltration",
-                          .least = 0.05,
-                          .most = 1.0,
-                          .unit = "m3/s at 4 m/s for each 1000 m2 of floor",
-                          .possible = always,
-                          .apply = wind_infiltration},
-                         {.id = "thermal_mass",
-                          .least = -0.75,
-                          .most = 1.5,
-                          .possible = always,
-                          .apply = thermal_mass}});
+  all.insert(all.end(),
+             {{"ground_coupling", 0.4, 1.0, "", has_ground, ground_coupling},
+              {"solar_gain_change", -0.7, 0.7, "", has_simple_windows, solar_gain_change},
+              {"stack_infiltration", 0.05, 1.0, "m3/s at 20 K for each 1000 m2 of floor", always,
+               stack_infiltration},
+              {"wind_infiltration", 0.05, 1.0, "m3/s at 4 m/s for each 1000 m2 of floor", always,
+               wind_infiltration},
+              {"thermal_mass", -0.75, 1.5, "", always, thermal_mass}});
 }
 
 }  // namespace recald::simulators::energyplus::changes

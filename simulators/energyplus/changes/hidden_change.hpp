@@ -24,13 +24,14 @@ struct HiddenChange {
   std::string_view id;  ///< As `EffectKind`.
   double least;         ///< Strengths that populations draw from; the sign is drawn if `least` < 0.
   double most;
-  std::string_view unit = {};  ///< Empty: the same quantity as `EffectKind`'s.
-  Course course = Course::at_once;
-  bool dated = false;  ///< Begins on a day; else it has always been there.
+  std::string_view unit;  ///< Empty: the same quantity as `EffectKind`'s.
   bool (*possible)(const BuildingYear& building);
   /// @param rng  The effect's own in this year.
   void (*apply)(BuildingYear& building, double strength, Rng rng);
+  Course course = Course::at_once;
+  bool dated = false;  ///< Begins on a day; else it has always been there.
 };
+inline constexpr bool kDated = true;
 
 /// All of them, in order of their names.
 [[nodiscard]] const std::vector<HiddenChange>& hidden_changes();

@@ -31,12 +31,11 @@ void chiller_part_load(BuildingYear& building, double share, Rng /*rng*/) {
                                                  {"coefficient3_x_2", 0.0},
                                                  {"minimum_value_of_x", 0.0},
                                                  {"maximum_value_of_x", kMost}};
-  for_each_object(building.model(), "Chiller:Electric:EIR",
-                  [&](const std::string& /*name*/, Json& chiller) {
-                    chiller
-                        ["electric_input_to_cooling_output_ratio_function_of_part_load_ratio_"
-                         "curve_name"] = kCurve;
-                  });
+  for_each_object(building.model(), "Chiller:Electric:EIR", [&](Json& chiller) {
+    chiller
+        ["electric_input_to_cooling_output_ratio_function_of_part_load_ratio_"
+         "curve_name"] = kCurve;
+  });
 }
 
 void fouling(BuildingYear& building, double share, Rng /*rng*/) {
@@ -45,12 +44,11 @@ void fouling(BuildingYear& building, double share, Rng /*rng*/) {
 
 void heat_pump_defrost(BuildingYear& building, double factor, Rng /*rng*/) {
   constexpr double kUsual = 0.058333;  // Three and a half minutes an hour.
-  for_each_object(building.model(), "Coil:Heating:DX:SingleSpeed",
-                  [&](const std::string& /*name*/, Json& coil) {
-                    coil["defrost_control"] = "Timed";
-                    coil["defrost_time_period_fraction"] =
-                        factor * coil.value("defrost_time_period_fraction", kUsual);
-                  });
+  for_each_object(building.model(), "Coil:Heating:DX:SingleSpeed", [&](Json& coil) {
+    coil["defrost_control"] = "Timed";
+    coil["defrost_time_period_fraction"] =
+        factor * coil.value("defrost_time_period_fraction", kUsual);
+  });
 }
 
 void add_heat(BuildingYear& building, const char* name, double W_m2, Quarters shares) {
@@ -82,37 +80,15 @@ void seasonal_hot_water(BuildingYear& building, double W_m2, Rng /*rng*/) {
 }  // namespace
 
 void add_plant_changes(std::vector<HiddenChange>& all) {
-  all.insert(all.end(), {{.id = "chiller_part_load",
-                          .least = 0.1,
-                          .most = 0.5,
-                          .unit = "share of full power at no load",
-                          .possible = has_chiller,
-                          .apply = chiller_part_load},
-                         {.id = "fouling",
-                          .least = 0.1,
-                          .most = 1.0,
-                          .unit = "share more electricity a year after cleaning",
-                          .course = Course::sawtooth,
-                          .possible = has_cooling_machine,
-                          .apply = fouling},
-                         {.id = "heat_pump_defrost",
-                          .least = 1.5,
-                          .most = 5.0,
-                          .unit = "times the usual defrosting",
-                          .possible = has_defrost,
-                          .apply = heat_pump_defrost},
-                         {.id = "seasonal_hot_water",
-                          .least = 0.5,
-                          .most = 8.0,
-                          .unit = "W/m2 of floor",
-                          .possible = has_heat_meter,
-                          .apply = seasonal_hot_water},
-                         {.id = "steam_trap_leak",
-                          .least = 0.3,
-                          .most = 6.0,
-                          .unit = "W/m2 of floor",
-                          .possible = has_heat_meter,
-                          .apply = steam_trap_leak}});
+  all.insert(all.end(),
+             {{"chiller_part_load", 0.1, 0.5, "share of full power at no load", has_chiller,
+               chiller_part_load},
+              {"fouling", 0.1, 1.0, "share more electricity a year after cleaning",
+               has_cooling_machine, fouling, Course::sawtooth},
+              {"heat_pump_defrost", 1.5, 5.0, "times the usual defrosting", has_defrost,
+               heat_pump_defrost},
+              {"seasonal_hot_water", 0.5, 8.0, "W/m2 of floor", has_heat_meter, seasonal_hot_water},
+              {"steam_trap_leak", 0.3, 6.0, "W/m2 of floor", has_heat_meter, steam_trap_leak}});
 }
 
 }  // namespace recald::simulators::energyplus::changes
