@@ -19,7 +19,6 @@ namespace {
 
 using metering::Instant;
 using metering::Month;
-using std::chrono::hours;
 
 /// What a run of EnergyPlus may touch: said, so that a pattern that means too much is seen.
 constexpr std::size_t kManyFields = 200;
@@ -95,7 +94,7 @@ const weather::WeatherHour* complete_hour(const weather::WeatherSeries& known, I
            });
   };
   const auto length = known.end() - known.begin;
-  for (hours apart{0}; apart <= length; apart += hours{24}) {
+  for (std::chrono::hours apart{0}; apart <= length; apart += std::chrono::hours{24}) {
     for (const Instant day : {at - apart, at + apart}) {
       if (const weather::WeatherHour* hour = known.find(day); is_complete(hour)) return hour;
     }
@@ -107,11 +106,12 @@ const weather::WeatherHour* complete_hour(const weather::WeatherSeries& known, I
 weather::WeatherSeries whole_year(const weather::WeatherSeries& known, int year,
                                   const metering::LocalCalendar& calendar) {
   const auto offset = calendar.standard_offset(std::chrono::year{year});
-  const Instant begin = std::chrono::sys_days{std::chrono::year{year} / 1 / 1} - offset - hours{24};
+  const Instant begin =
+      std::chrono::sys_days{std::chrono::year{year} / 1 / 1} - offset - std::chrono::hours{24};
   const Instant end =
-      std::chrono::sys_days{std::chrono::year{year + 1} / 1 / 1} - offset + hours{24};
-  weather::WeatherSeries whole{std::chrono::floor<hours>(begin), {}};
-  for (Instant hour = whole.begin; hour < end; hour += hours{1}) {
+      std::chrono::sys_days{std::chrono::year{year + 1} / 1 / 1} - offset + std::chrono::hours{24};
+  weather::WeatherSeries whole{std::chrono::floor<std::chrono::hours>(begin), {}};
+  for (Instant hour = whole.begin; hour < end; hour += std::chrono::hours{1}) {
     Instant from = hour;
     // The same hour of the nearest day that is known.
     if (from < known.begin) from += std::chrono::ceil<std::chrono::days>(known.begin - from);

@@ -18,12 +18,11 @@ namespace {
 
 using metering::Instant;
 using metering::Month;
-using std::chrono::hours;
 using weather::SensorQuantity;
 using weather::SensorValue;
 using weather::WeatherHour;
 
-constexpr hours kBridged{6};  // by a straight line: `weather::fill_gaps`
+constexpr std::chrono::hours kBridged{6};  // by a straight line: `weather::fill_gaps`
 
 double within_bounds(const SensorQuantity& quantity, double value) {
   if (quantity.member == &WeatherHour::rel_humidity_pct) return std::min(value, 100.0);
@@ -75,7 +74,8 @@ std::map<std::string, double> shares_of(const weather::MergedWeather& merged,
   double hours_in_month = 0.0;
   for (std::size_t i = 0; i < merged.source.size(); ++i) {
     // An hour belongs to the month that contains its middle.
-    if (!month.contains(merged.series.begin + hours{i} + std::chrono::minutes{30})) continue;
+    if (!month.contains(merged.series.begin + std::chrono::hours{i} + std::chrono::minutes{30}))
+      continue;
     hours_in_month += 1.0;
     for (const std::size_t variable : kNeededWeather) {
       const std::size_t source = merged.source[i][variable];
@@ -120,7 +120,8 @@ Result<bool> is_silent_in(const weather::WeatherHole& hole, const MeterConfig& s
     if (!begun || *begun >= hole.span.begin) return false;
     // A hole begins and ends on the hour, and the sensor may have values for up to
     // half of that hour.
-    const metering::TimeSpan inner{hole.span.begin + hours{1}, hole.span.end - hours{1}};
+    const metering::TimeSpan inner{hole.span.begin + std::chrono::hours{1},
+                                   hole.span.end - std::chrono::hours{1}};
     bool is_silent = true;
     TRY(live.for_each(stored, inner, [&](const metering::Reading& reading) {
       is_silent = is_silent && reading.validity == metering::Validity::missing;
@@ -242,8 +243,10 @@ Result<weather::WeatherSeries> merge_with_sensors(const SiteConfig& site,
                                                   const std::optional<FileWeather>& file,
                                                   LiveReadings* live, SiteWeather& result) {
   const metering::TimeSpan span{
-      std::chrono::floor<hours>(calendar.month_span(months.first).begin) - hours{24},
-      std::chrono::ceil<hours>(calendar.month_span(months.last).end) + hours{24}};
+      std::chrono::floor<std::chrono::hours>(calendar.month_span(months.first).begin) -
+          std::chrono::hours{24},
+      std::chrono::ceil<std::chrono::hours>(calendar.month_span(months.last).end) +
+          std::chrono::hours{24}};
   std::vector<SensorWeather> sensors;
   std::vector<std::string> names;  // one per source
   for (const MeterConfig& sensor : site.sensors) {
