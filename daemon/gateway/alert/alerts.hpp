@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "adapters/ports/alive.hpp"
+#include "adapters/ports/event_store.hpp"
 #include "adapters/ports/loop.hpp"
-#include "adapters/ports/store.hpp"
 #include "adapters/ports/wakeup.hpp"
 #include "adapters/ports/worker.hpp"
 #include "daemon/gateway/alert/alert_message.hpp"
@@ -49,7 +49,7 @@ class Alerts {
  public:
   struct Ports {
     Loop& loop;
-    Store& store;
+    EventStore& store;
     Worker& worker;  ///< For this object alone.
   };
 

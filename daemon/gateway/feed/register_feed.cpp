@@ -10,7 +10,8 @@ namespace {
 
 /// Why a meter without a state should have one; empty: it need not. Samples are stored together
 /// with the state they led to, so if there are samples, the state was lost.
-Result<std::string> lost_state(Store& store, std::uint32_t meter, const std::string& field) {
+Result<std::string> lost_state(IntervalStore& store, std::uint32_t meter,
+                               const std::string& field) {
   std::string lost;
   TRY(store.for_each_sample(meter, field, [&](const metering::RegisterSample&) {
     lost = "the state of its counter is no longer in the store";
@@ -27,7 +28,7 @@ Result<std::vector<modbus::PlannedRead>> planned_reads(const MeterConfig& config
 }
 
 /// Stored states of a meter's registers. Unreadable ones start anew, and `doubt` says why.
-Result<std::vector<RegisterState>> stored_states(Store& store, std::uint32_t number,
+Result<std::vector<RegisterState>> stored_states(IntervalStore& store, std::uint32_t number,
                                                  std::string& doubt) {
   auto states = store.registers(number);
   if (states || states.error().code != ErrorCode::malformed) return states;

@@ -24,8 +24,8 @@ std::size_t keep_newest(std::vector<T>& values, std::size_t max) {
 
 }  // namespace
 
-Committer::Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommitted on_committed,
-                     OnRefusal on_refusal)
+Committer::Committer(Loop& loop, IntervalStore& store, const CommitRules& rules,
+                     OnCommitted on_committed, OnRefusal on_refusal)
     : loop_(loop),
       store_(store),
       rules_(rules),

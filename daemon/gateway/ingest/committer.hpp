@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
+#include "adapters/ports/interval_store.hpp"
 #include "adapters/ports/loop.hpp"
-#include "adapters/ports/store.hpp"
 #include "adapters/ports/wakeup.hpp"
 #include "daemon/gateway/poll/latency_histogram.hpp"
 
@@ -44,7 +44,7 @@ class Committer {
   /// Called when the store begins to refuse, with its words, and when it accepts again, with none.
   using OnRefusal = std::function<void(const std::string& why)>;
 
-  Committer(Loop& loop, Store& store, const CommitRules& rules, OnCommitted on_committed,
+  Committer(Loop& loop, IntervalStore& store, const CommitRules& rules, OnCommitted on_committed,
             OnRefusal on_refusal = {});
 
   void add(StoreBatch batch);
@@ -61,7 +61,7 @@ class Committer {
   void give_up_what_is_too_much();
 
   Loop& loop_;
-  Store& store_;
+  IntervalStore& store_;
   CommitRules rules_;
   OnCommitted on_committed_;
   OnRefusal on_refusal_;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "adapters/ports/alive.hpp"
+#include "adapters/ports/job_store.hpp"
 #include "adapters/ports/loop.hpp"
-#include "adapters/ports/store.hpp"
 #include "adapters/ports/worker.hpp"
 #include "core/metering/months/month_closer.hpp"
 
@@ -27,7 +27,7 @@ class WeatherWait {
  public:
   struct Ports {
     Loop& loop;
-    Store& store;
+    JobStore& store;
     Worker& worker;
   };
   WeatherWait(Ports ports, CheckWeather look, std::function<void()> ask);

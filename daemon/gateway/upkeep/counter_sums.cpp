@@ -21,7 +21,7 @@ constexpr Reason kBroken =
     Reason::rollover | Reason::wrap | Reason::reset | Reason::jump | Reason::bounce | Reason::clock;
 
 /// The register at each UTC midnight between two samples.
-Result<std::map<Instant, double>> midnights(Store& store, std::uint32_t meter) {
+Result<std::map<Instant, double>> midnights(IntervalStore& store, std::uint32_t meter) {
   std::map<Instant, double> register_kWh;
   std::optional<RegisterSample> before;
   TRY(store.for_each_sample(meter, "energy", [&](const RegisterSample& sample) {
@@ -45,7 +45,7 @@ struct DaySum {
 };
 
 /// Sums of the days whose intervals all came from one unbroken run of the register.
-Result<std::map<Instant, DaySum>> day_sums(Store& store, const StoredMeter& meter) {
+Result<std::map<Instant, DaySum>> day_sums(IntervalStore& store, const StoredMeter& meter) {
   std::map<Instant, DaySum> sums;
   TRY(store.for_each_interval(
       meter.number, {Instant::min(), Instant::max()}, [&](const StoredInterval& interval) {
@@ -64,7 +64,7 @@ Result<std::map<Instant, DaySum>> day_sums(Store& store, const StoredMeter& mete
 
 }  // namespace
 
-Result<CounterComparison> compare_with_counter(Store& store, const StoredMeter& meter) {
+Result<CounterComparison> compare_with_counter(IntervalStore& store, const StoredMeter& meter) {
   CounterComparison comparison;
   const auto states = TRY(store.registers(meter.number));
   if (states.empty()) return comparison;

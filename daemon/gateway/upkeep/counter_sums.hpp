@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/ports/store.hpp"
+#include "adapters/ports/interval_store.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
 
 namespace recald::daemon {
@@ -18,7 +18,7 @@ struct CounterComparison {
 /// Compares the sum of each UTC day's intervals with the difference of the register's samples. The
 /// register at midnight is interpolated between the samples around it, at most five minutes apart.
 /// Days with a reset of the register or a manual edit are left out.
-[[nodiscard]] Result<CounterComparison> compare_with_counter(Store& store,
+[[nodiscard]] Result<CounterComparison> compare_with_counter(IntervalStore& store,
                                                              const StoredMeter& meter);
 
 }  // namespace recald::daemon

@@ -30,7 +30,7 @@ std::string month_line(const std::string& meter, const StoredMonth& month) {
 
 }  // namespace
 
-Result<void> export_readings(Store& store, std::span<const StoredMeter> meters,
+Result<void> export_readings(IntervalStore& store, std::span<const StoredMeter> meters,
                              const metering::TimeSpan& span, std::ostream& out) {
   out << "timestamp,meter,value,unit,validity,late,reasons\n";
   for (const StoredMeter& meter : meters) {
@@ -43,7 +43,7 @@ Result<void> export_readings(Store& store, std::span<const StoredMeter> meters,
   return {};
 }
 
-Result<void> export_months(Store& store, const metering::LocalCalendar& calendar,
+Result<void> export_months(MonthStore& store, const metering::LocalCalendar& calendar,
                            std::span<const StoredMeter> meters, const metering::TimeSpan& span,
                            std::ostream& out) {
   out << "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,revision,tzdata\n";

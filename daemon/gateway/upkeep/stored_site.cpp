@@ -6,7 +6,7 @@
 
 namespace recald::daemon {
 
-Result<std::vector<StoredMeter>> stored_meters(Store& store, const SiteConfig& site) {
+Result<std::vector<StoredMeter>> stored_meters(IntervalStore& store, const SiteConfig& site) {
   std::vector<StoredMeter> meters;
   for (const MeterConfig& config : site.meters) {
     const auto number = TRY(store.find_meter(config.meter.id));

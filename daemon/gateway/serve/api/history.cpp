@@ -47,7 +47,7 @@ seconds history_step(const metering::TimeSpan& span, metering::Instant origin, s
   return longest;
 }
 
-Result<History> read_history(Store& store, std::uint32_t meter, seconds interval,
+Result<History> read_history(IntervalStore& store, std::uint32_t meter, seconds interval,
                              const metering::TimeSpan& span, int points_max) {
   const auto extent = TRY(store.interval_extent(meter));
   if (!extent) return History{interval, {}};

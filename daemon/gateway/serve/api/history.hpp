@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "adapters/ports/store.hpp"
+#include "adapters/ports/interval_store.hpp"
 
 namespace recald::daemon {
 
@@ -33,7 +33,7 @@ struct History {
 /// @param meter  Its number in the store.
 /// @param span   Cut to what the store has of the meter, by whole steps.
 /// @return or the store's failure.
-[[nodiscard]] Result<History> read_history(Store& store, std::uint32_t meter,
+[[nodiscard]] Result<History> read_history(IntervalStore& store, std::uint32_t meter,
                                            std::chrono::seconds interval,
                                            const metering::TimeSpan& span, int points_max);
 
