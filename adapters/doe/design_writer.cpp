@@ -103,9 +103,9 @@ std::string difference(const fs::path& folder, const DesignPlan& plan) {
     return "has other runs: by another seed or number, by --priors or --corners, or by another "
            "version";
   }
-  const auto said = nlohmann::json::parse(*state, nullptr, /*allow_exceptions=*/false);
+  const auto parsed = nlohmann::json::parse(*state, nullptr, /*allow_exceptions=*/false);
   const Eigen::Index before =
-      said.is_object() ? said.value("runs", plan.theta.rows()) : plan.theta.rows();
+      parsed.is_object() ? parsed.value("runs", plan.theta.rows()) : plan.theta.rows();
   if (*state == state_json(plan, before)) return "";
   return "was made from another site file, other readings or weather, or by another version";
 }

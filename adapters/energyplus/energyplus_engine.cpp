@@ -267,11 +267,11 @@ Result<Eigen::MatrixXd> EnergyPlusEngine::run(const Eigen::MatrixXd& theta,
   std::vector<Result<RunFigures>> results(rows, RunFigures{});
   std::atomic<int> done = 0;
   std::atomic<bool> is_stopped = false;
-  std::mutex telling;
+  std::mutex reporting;
   const auto keep_going = [&] {
     if (is_stopped) return false;
     if (!observer) return true;
-    const std::scoped_lock lock{telling};
+    const std::scoped_lock lock{reporting};
     if (!observer(done, static_cast<int>(rows))) is_stopped = true;
     return !is_stopped.load();
   };

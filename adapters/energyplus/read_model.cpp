@@ -47,15 +47,15 @@ Result<void> run_helper(std::string_view name, const std::vector<std::string>& a
       fs::create_symlink(entry.path(), folder / file, failed);
     }
   }
-  const fs::path said = folder / "said.txt";
+  const fs::path output = folder / "said.txt";
   const auto ended = TRY(system::run_child({.program = helper,
                                             .arguments = arguments,
                                             .folder = folder,
-                                            .output = said,
+                                            .output = output,
                                             .time_max = kLongest},
                                            {}));
   if (ended.ending == system::Ending::exited && ended.exit_code == 0) return {};
-  std::string words = file_text(said).substr(0, 400);
+  std::string words = file_text(output).substr(0, 400);
   std::ranges::replace_if(
       words, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   return failure(ErrorCode::io_failed,

@@ -18,7 +18,7 @@ constexpr std::uint16_t kEndOfChain = 0xFFFF;
 constexpr std::size_t kModelsMax = 100;
 constexpr int kRegisters = 0x10000;
 
-bool says_that_nothing_is_there(const ReadFailure& failure) {
+bool is_nothing_there(const ReadFailure& failure) {
   return failure.fault == ReadFault::exception && failure.exception_code >= 2 &&
          failure.exception_code <= 4;
 }
@@ -42,7 +42,7 @@ void SunSpecWalk::take(const ReadResult& result) {
     header_ ? take_header(*result) : take_mark(*result);
     return;
   }
-  if (!says_that_nothing_is_there(result.error())) {
+  if (!is_nothing_there(result.error())) {
     failure_ = result.error();
     is_over_ = true;
   } else if (header_) {

@@ -32,9 +32,9 @@ constexpr milliseconds kGoodbye{1000};
 
 /// Whether it was not said before. What a broker says is remembered up to a limit, and not told
 /// again beyond it.
-bool is_news(std::set<std::string>& said, const std::string& sentence) {
-  constexpr std::size_t kSaid_max = 1000;
-  return said.size() < kSaid_max && said.insert(sentence).second;
+bool is_news(std::set<std::string>& reported, const std::string& sentence) {
+  constexpr std::size_t kReported_max = 1000;
+  return reported.size() < kReported_max && reported.insert(sentence).second;
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ class Connection::Client final : private LinkListener {
 
   // Of the thread alone.
   std::map<int, InFlight> in_flight_;
-  std::set<std::string> told_;        ///< Causes since the last good connection.
+  std::set<std::string> reported_;    ///< Causes since the last good connection.
   std::set<std::string> complaints_;  ///< Ever.
   std::optional<steady_clock::time_point> connected_at_;
 
@@ -195,7 +195,7 @@ void Connection::Client::acknowledged(int id, const std::string& refusal, bool i
 
 void Connection::Client::connected() {
   connected_at_ = steady_clock::now();
-  told_.clear();
+  reported_.clear();
   {
     const std::scoped_lock lock{mutex_};
     is_connected_ = true;
@@ -214,7 +214,7 @@ void Connection::Client::lose(const Error& why) {
       changed_.notify_all();
     }
   }
-  if (is_news(told_, why.message)) on_state_(false, why.message);
+  if (is_news(reported_, why.message)) on_state_(false, why.message);
 }
 
 void Connection::Client::complain(const std::string& sentence) {

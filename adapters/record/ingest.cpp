@@ -138,8 +138,8 @@ Result<Taking::End> Taking::run() {
     return End::behind;
   }
   if (!has_partitions_) return End::partitions_missing;
-  const auto beyond = [](std::int64_t known, std::int64_t told, const auto& rows) {
-    return std::max({known, told, rows.empty() ? 0 : rows.back().number});
+  const auto beyond = [](std::int64_t known, std::int64_t sent, const auto& rows) {
+    return std::max({known, sent, rows.empty() ? 0 : rows.back().number});
   };
   const Progress& after = batch_.after;
   until_ = {.entries = beyond(known_.entries, after.entries, batch_.entries),

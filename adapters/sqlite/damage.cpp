@@ -11,7 +11,7 @@ namespace {
 /// Whether a file's header says that it has a log, as every database that `Database` opened to
 /// write does. With another number there, SQLite reads the file but never writes to it again.
 /// @see SQLite, "Database File Format", 1.3.3
-bool says_that_it_has_a_log(const std::filesystem::path& file) {
+bool has_log_mode(const std::filesystem::path& file) {
   constexpr std::streamoff kVersions = 18;  // of writing and of reading
   std::ifstream in{file, std::ios::binary};
   in.seekg(kVersions);
@@ -36,7 +36,7 @@ Result<std::string> damage_of(const std::filesystem::path& file, const OnProgres
     if (version.error().code == ErrorCode::malformed) return version.error().message;
     return tl::unexpected(version.error());
   }
-  if (!says_that_it_has_a_log(file)) return "its header has the number of another file format";
+  if (!has_log_mode(file)) return "its header has the number of another file format";
   // An interrupt before the check starts is forgotten, so ask again here.
   if (stop.stop_requested()) return failure(ErrorCode::cancelled, "the check was stopped");
   auto damage = database->quick_check();

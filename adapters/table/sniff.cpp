@@ -304,11 +304,11 @@ class TableSniffer {
     }
     guess_.shape.time_format = kDateFormats[best];
     guess_.has_offsets = trial.offsets == trial.read;
-    say_why(trials, best, example);
+    explain(trials, best, example);
     return {};
   }
 
-  void say_why(const std::array<FormatTrial, 3>& trials, std::size_t best,
+  void explain(const std::array<FormatTrial, 3>& trials, std::size_t best,
                const std::string& example) {
     guess_.time_format_because = "such as " + example;
     if (best == 0) return;

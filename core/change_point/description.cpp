@@ -49,10 +49,10 @@ std::string kinds_text(const Regression& regression, int base) {
 std::string bases_text(const Regression& regression, std::size_t curve,
                        const display::Unit& daily) {
   std::string text;
-  std::set<int> said;
+  std::set<int> described;
   for (std::size_t type = 0; type < model::kDayTypes; ++type) {
     const int base = regression.base_number[type];
-    if (regression.curve_of[type] != curve || !said.insert(base).second) continue;
+    if (regression.curve_of[type] != curve || !described.insert(base).second) continue;
     const std::string load = three_digits(daily.shown(regression.base_kWh[type]));
     text += (text.empty() ? load + " " + daily.name : ", " + load) + kinds_text(regression, base);
   }

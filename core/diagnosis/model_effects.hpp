@@ -29,7 +29,7 @@ struct ModelEffects {
   std::shared_ptr<const SiteProblem> site;  ///< As a diagnosis of it would build it.
   std::vector<AddedEffect> added;
   std::vector<Candidate> candidates;  ///< Of `added`.
-  std::vector<Parameter> parameters;             ///< (r) priors are fitted to what is known of η.
+  std::vector<Parameter> parameters;  ///< (r) priors are fitted to what is known of η.
   Eigen::MatrixXd draws;  ///< (draws x r) of the posteriors; days from the site's origin.
   std::vector<std::shared_ptr<const EffectParameterLabel>> labels;  ///< (r)
 
@@ -42,8 +42,7 @@ struct ModelEffects {
   /// The additions to a monthly model, over the range of the draws and of the priors of
   /// `parameters`: for all months of `site`, each effect on top of the earlier ones at their means.
   /// @param theta  Of the monthly model; the first parameters of `site`.
-  [[nodiscard]] std::vector<MonthlyEffect> monthly(
-      std::span<const Parameter> theta) const;
+  [[nodiscard]] std::vector<MonthlyEffect> monthly(std::span<const Parameter> theta) const;
 };
 
 /// @param added  Not empty.
@@ -52,8 +51,8 @@ struct ModelEffects {
 ///                          site does not model its meter; it counts days from months outside
 ///                          the site's period;
 ///         not_enough_data  no draws.
-[[nodiscard]] Result<ModelEffects> make_model_effects(
-    std::vector<AddedEffect> added, std::shared_ptr<const SiteProblem> site);
+[[nodiscard]] Result<ModelEffects> make_model_effects(std::vector<AddedEffect> added,
+                                                      std::shared_ptr<const SiteProblem> site);
 
 /// The hourly model with η among its parameters: θ of the site, then η. A change of η binds the
 /// effects again, which allocates but costs little compared with a run.

@@ -27,7 +27,7 @@ Kinds weekdays() {
 }
 
 /// "Weekdays SummerDesignDay"; none: no such kind of day.
-std::optional<Kinds> kinds_of(std::string_view words, const Kinds& told) {
+std::optional<Kinds> kinds_of(std::string_view words, const Kinds& covered) {
   Kinds all;
   std::string word;
   const auto take = [&] {
@@ -46,7 +46,7 @@ std::optional<Kinds> kinds_of(std::string_view words, const Kinds& told) {
     } else if (word == "alldays") {
       all.set();
     } else if (word == "allotherdays") {
-      all |= ~told;
+      all |= ~covered;
     } else {
       return false;
     }
@@ -118,7 +118,7 @@ std::optional<double> number_in(const Json& field) {
 
 std::optional<ScheduleValues> read_compact(const Json& object) {
   ScheduleValues schedule{text_of(object, "schedule_type_limits_name"), {}};
-  Kinds told;
+  Kinds covered;
   Kinds now;
   int until = 0;  // minute; 0: no value is due
   const auto data = object.find("data");
@@ -140,12 +140,12 @@ std::optional<ScheduleValues> read_compact(const Json& object) {
       const auto day = date_of(*date);
       if (!day) return {};
       schedule.spans.push_back({day->first, day->second, {}});
-      told.reset();
+      covered.reset();
     } else if (const auto words = after(line, "for")) {
-      const auto kinds = kinds_of(*words, told);
+      const auto kinds = kinds_of(*words, covered);
       if (!kinds) return {};
-      now = *kinds & ~told;  // the first that speaks of a day counts
-      told |= *kinds;
+      now = *kinds & ~covered;  // the first that speaks of a day counts
+      covered |= *kinds;
     } else if (const auto clock = after(line, "until")) {
       until = minute_of(*clock).value_or(0);
       if (until == 0) return {};
@@ -231,13 +231,13 @@ Json compact_schedule(const ScheduleValues& schedule) {
   const auto line = [&](const std::string& text) { data.push_back({{"field", text}}); };
   for (const ScheduleSpan& span : schedule.spans) {
     line(fmt::format("Through: {}/{}", span.month, span.day));
-    Kinds told;
+    Kinds covered;
     for (std::size_t kind = 0; kind < kDayKinds; ++kind) {
-      if (told[kind]) continue;
+      if (covered[kind]) continue;
       std::string days = "For:";
       for (std::size_t other = kind; other < kDayKinds; ++other) {
         if (span.days[other] != span.days[kind]) continue;
-        told.set(other);
+        covered.set(other);
         days += fmt::format(" {}", kWritten[other]);
       }
       line(days);

@@ -71,14 +71,14 @@ Result<std::filesystem::path> locate(const std::filesystem::path& configured) {
 Result<Program> find_program(const std::filesystem::path& configured) {
   const auto executable = TRY(locate(configured));
   const auto scratch = TRY(system::ScratchFolder::make());
-  const std::filesystem::path said = scratch.path() / "version.txt";
+  const std::filesystem::path output = scratch.path() / "version.txt";
   TRY(system::run_child({.program = executable,
                          .arguments = {"--version"},
                          .folder = scratch.path(),
-                         .output = said,
+                         .output = output,
                          .time_max = std::chrono::seconds{60}},
                         {}));
-  std::ifstream in{said};
+  std::ifstream in{output};
   const std::string text{std::istreambuf_iterator<char>{in}, {}};
   std::smatch match;
   if (!std::regex_search(text, match, std::regex{R"(Version (\d+)\.(\d+))"})) {

@@ -38,12 +38,12 @@ Json run_period(const RunRequest& request, const Json& objects) {
   return period;
 }
 
-std::string failed_words(const ErrorFile& said, const system::ChildEnd& ended,
+std::string failed_words(const ErrorFile& errors, const system::ChildEnd& ended,
                          const std::filesystem::path& folder) {
   const bool is_killed = ended.ending == system::Ending::killed;
-  const std::string words = said.words();
+  const std::string words = errors.words();
   if (!words.empty()) {
-    const std::size_t others = said.severe_count > 1 ? said.severe_count - 1 : 0;
+    const std::size_t others = errors.severe_count > 1 ? errors.severe_count - 1 : 0;
     return fmt::format(
         "EnergyPlus says: {}{}", words,
         others == 0 ? std::string{}
@@ -103,11 +103,11 @@ Result<std::filesystem::path> simulate(const Json& objects, const std::filesyste
                    fmt::format("EnergyPlus was still running after {} s and was ended; see {}",
                                limits.time_max.count(), (folder / "energyplus.log").string()));
   }
-  const ErrorFile said = read_error_file(folder / "eplusout.err");
+  const ErrorFile errors = read_error_file(folder / "eplusout.err");
   const bool went_well =
-      ended.ending == system::Ending::exited && ended.exit_code == 0 && said.fatal.empty();
+      ended.ending == system::Ending::exited && ended.exit_code == 0 && errors.fatal.empty();
   if (went_well) return folder / kOutputFile;
-  return failure(ErrorCode::invalid_value, failed_words(said, ended, folder));
+  return failure(ErrorCode::invalid_value, failed_words(errors, ended, folder));
 }
 
 }  // namespace recald::energyplus

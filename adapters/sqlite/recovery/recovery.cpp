@@ -94,11 +94,11 @@ Result<void> take_rows(const fs::path& file, Database& to, Recovery& recovery,
   return {};
 }
 
-Result<void> tell(SqliteStore& store, const Recovery& recovery, metering::Instant now) {
+Result<void> add_event(SqliteStore& store, const Recovery& recovery, metering::Instant now) {
   const auto time = TRY(time_of_event(store.database(), now));
-  const auto told = store.commit(
+  const auto added = store.commit(
       {.events = {{time, Severity::error, "store_recovered", "", recovery.sentence()}}});
-  return told ? Result<void>{} : tl::unexpected(told.error());
+  return added ? Result<void>{} : tl::unexpected(added.error());
 }
 
 Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
@@ -121,7 +121,7 @@ Result<void> fill(SqliteStore& made, Recovery& recovery, metering::Instant now,
   recovery.from_samples = refilled.from_samples;
   recovery.lost_intervals = refilled.still_missing;
   if (auto forgotten = forget_identities(to); !forgotten) return forgotten;
-  if (auto told = tell(made, recovery, now); !told) return told;
+  if (auto added = add_event(made, recovery, now); !added) return added;
   // Moves everything into the one file that is renamed.
   return to.execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }
@@ -144,7 +144,7 @@ Result<void> make_anew(const Places& places, Recovery& recovery,
 }
 
 /// Whether an event in the store reports this recovery.
-Result<bool> tells_of(Database& store, const Recovery& recovery) {
+Result<bool> has_event_of(Database& store, const Recovery& recovery) {
   auto query = TRY(
       store.prepare("SELECT 1 FROM event WHERE kind = 'store_recovered' AND instr(text, ?) > 0"));
   return query.bind(0, std::string_view{recovery.damaged.filename().native()}).step();
@@ -158,12 +158,12 @@ Result<void> close_note(const Places& places, Recovery& recovery, metering::Inst
   // A damaged store is examined after the note is removed.
   if (!store && store.error().code != ErrorCode::malformed) return tl::unexpected(store.error());
   if (store) {
-    const auto tells = TRY(tells_of(store->database(), recovery));
-    recovery.is_overtaken = !tells;
+    const auto has_event = TRY(has_event_of(store->database(), recovery));
+    recovery.is_overtaken = !has_event;
     if (recovery.is_overtaken) {
       // It may be an older one.
       if (auto forgotten = forget_identities(store->database()); !forgotten) return forgotten;
-      if (auto told = tell(*store, recovery, now); !told) return told;
+      if (auto added = add_event(*store, recovery, now); !added) return added;
     }
   }
   return system::remove_durably(places.note);

@@ -109,7 +109,7 @@ class Restoration final : public StoreRestoration {
 
   Result<fs::path> keep(metering::Instant now) override {
     const std::string stamp = free_stamp(now);
-    TRY(tell(replaced_name(store_, stamp), now));
+    TRY(add_event(replaced_name(store_, stamp), now));
     TRY(number_jobs_on());
     TRY(forget_identities(opened_->database()));
     // Moves everything into the one file that is renamed.
@@ -136,7 +136,7 @@ class Restoration final : public StoreRestoration {
                     is_there(store_) ? last_job(store_) : 0));
   }
 
-  Result<void> tell(const fs::path& replaced, metering::Instant now) {
+  Result<void> add_event(const fs::path& replaced, metering::Instant now) {
     const auto time = TRY(time_of_event(opened_->database(), now));
     std::string text = fmt::format("the store is the backup '{}'", backup_.filename().string());
     if (summary_.newest) {
@@ -146,9 +146,9 @@ class Restoration final : public StoreRestoration {
       text +=
           fmt::format("; the store that it replaced is kept as '{}'", replaced.filename().string());
     }
-    const auto told =
+    const auto added =
         opened_->commit({.events = {{time, Severity::warning, "store_restored", "", text}}});
-    return told ? Result<void>{} : tl::unexpected(told.error());
+    return added ? Result<void>{} : tl::unexpected(added.error());
   }
 
   fs::path store_;

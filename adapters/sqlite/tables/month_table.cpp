@@ -71,8 +71,8 @@ Result<int> insert_month(Database& database, std::uint32_t meter, const StoredMo
     auto insert = TRY(database.prepare(insert_into("month", 21)));
     bind_month(insert, meter, month, revision);
     TRY(insert.run());
-    auto told = TRY(database.prepare(insert_outbox_entry()));
-    TRY(bound(told, meter, std::optional<Instant>{}, month.figure.month, revision).run());
+    auto entry = TRY(database.prepare(insert_outbox_entry()));
+    TRY(bound(entry, meter, std::optional<Instant>{}, month.figure.month, revision).run());
     auto settled = TRY(database.prepare("DELETE FROM reopened WHERE meter = ? AND month = ?"));
     TRY(bound(settled, meter, month.figure.month).run());
     return revision;

@@ -40,7 +40,7 @@ const FittedMeter& farthest(const std::vector<FittedMeter>& meters) {
                                    [](const FittedMeter& meter) { return std::abs(meter.after); });
 }
 
-void say_worse(const FittedMeter& meter, FirstScreen& first) {
+void report_worse(const FittedMeter& meter, FirstScreen& first) {
   first.sentence =
       fmt::format("Calibration made the model worse: it now uses {}, and was {} off before.",
                   too_much_words(meter), whole_percent(meter.before));
@@ -52,7 +52,7 @@ void say_worse(const FittedMeter& meter, FirstScreen& first) {
           : "The forecasts correct for that; savings computed from the model do not.";
 }
 
-void say_off(const FittedMeter& meter, FirstScreen& first) {
+void report_bias(const FittedMeter& meter, FirstScreen& first) {
   const bool was_off = std::isfinite(meter.before);
   const bool mended = was_off && std::abs(meter.after) < kMended * std::abs(meter.before);
   first.sentence = fmt::format("The model uses {}; ", too_much_words(meter));
@@ -65,14 +65,14 @@ void say_off(const FittedMeter& meter, FirstScreen& first) {
   }
 }
 
-void say_scatter(const FittedMeter& meter, FirstScreen& first) {
+void report_scatter(const FittedMeter& meter, FirstScreen& first) {
   first.sentence =
       fmt::format("The model uses the right amount of {} over the year, but its months are {} off.",
                   display::uncapitalised(meter.label), whole_percent(meter.scatter));
   first.more = "Something that changes with the season may be missing in it.";
 }
 
-void say_right(const std::vector<FittedMeter>& meters, FirstScreen& first) {
+void report_good_fit(const std::vector<FittedMeter>& meters, FirstScreen& first) {
   const double most = std::abs(farthest(meters).after);
   const bool unseen = meters.front().unseen;
   first.sentence =
@@ -147,13 +147,13 @@ FirstScreen calibration_first_screen(const std::vector<FittedMeter>& meters, boo
   const auto worse = std::ranges::find_if(by_bias, has_become_worse);
   const auto scattered = std::ranges::max_element(by_bias, {}, &FittedMeter::scatter);
   if (worse != by_bias.end()) {
-    say_worse(*worse, first);
+    report_worse(*worse, first);
   } else if (std::abs(by_bias.front().after) > assessment::kMonthlyLimits.nmbe) {
-    say_off(by_bias.front(), first);
+    report_bias(by_bias.front(), first);
   } else if (scattered->scatter > assessment::kMonthlyLimits.cvrmse) {
-    say_scatter(*scattered, first);
+    report_scatter(*scattered, first);
   } else {
-    say_right(by_bias, first);
+    report_good_fit(by_bias, first);
   }
   if (!converged) {
     first.more = first.sentence + (first.more.empty() ? "" : " " + first.more);

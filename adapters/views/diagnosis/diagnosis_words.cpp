@@ -319,7 +319,7 @@ std::vector<Separation> separations_of(const Diagnosis& d, const SiteProblem& si
 
 std::vector<NotIdentifiable> not_seen_here(const Diagnosis& d) {
   std::vector<NotIdentifiable> list = d.not_identifiable;
-  const auto is_told = [&](std::string_view effect) {
+  const auto is_reported = [&](std::string_view effect) {
     return std::ranges::any_of(list, [&](const NotIdentifiable& n) { return n.effect == effect; });
   };
   const auto was_weighed = [&](std::string_view effect) {
@@ -330,7 +330,7 @@ std::vector<NotIdentifiable> not_seen_here(const Diagnosis& d) {
   // An effect stands in the list of candidates once for each meter and way of dating it.
   for (const diagnosis::Candidate& candidate : d.candidates) {
     const std::string_view effect = candidate.effect->id;
-    if (is_told(effect) || was_weighed(effect)) continue;
+    if (is_reported(effect) || was_weighed(effect)) continue;
     list.push_back({std::string{effect}, "it would not show at these meters"});
   }
   return list;

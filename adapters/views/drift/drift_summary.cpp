@@ -60,35 +60,35 @@ std::optional<std::string> subject_of(const drift::SiteDrift& drift, const drift
 
 DriftAlarm alarm_of(const drift::SiteDrift& drift, const drift::ExplainedAlarm& explained) {
   const drift::Alarm& alarm = explained.alarm;
-  DriftAlarm told{.month = drift.month_name(alarm.month),
-                  .output = drift.outputs[static_cast<std::size_t>(alarm.output)].name,
-                  .direction = alarm.direction > 0 ? "more" : "less",
-                  .evidence = alarm.evidence,
-                  .since = drift.month_name(alarm.since),
-                  .since_earliest = drift.month_name(alarm.since_earliest),
-                  .since_latest = drift.month_name(alarm.since_latest),
-                  .forecasts_are_true = alarm.is_calibrated,
-                  .causes = {},
-                  .explained_until = drift.month_name(explained.explained_until),
-                  .consequence = consequence_word(explained.consequence),
-                  .sentence = explained_sentence(drift, explained)};
+  DriftAlarm row{.month = drift.month_name(alarm.month),
+                 .output = drift.outputs[static_cast<std::size_t>(alarm.output)].name,
+                 .direction = alarm.direction > 0 ? "more" : "less",
+                 .evidence = alarm.evidence,
+                 .since = drift.month_name(alarm.since),
+                 .since_earliest = drift.month_name(alarm.since_earliest),
+                 .since_latest = drift.month_name(alarm.since_latest),
+                 .forecasts_are_true = alarm.is_calibrated,
+                 .causes = {},
+                 .explained_until = drift.month_name(explained.explained_until),
+                 .consequence = consequence_word(explained.consequence),
+                 .sentence = explained_sentence(drift, explained)};
   if (alarm.days) {
-    told.days =
+    row.days =
         AlarmedDays{metering::to_string(alarm.days->raised), metering::to_string(alarm.days->since),
                     metering::to_string(alarm.days->since_earliest),
                     metering::to_string(alarm.days->since_latest), alarm.days->excess};
   }
   for (const drift::Cause& cause : explained.causes) {
-    told.causes.push_back({.kind = kind_word(cause.kind),
-                           .subject = subject_of(drift, cause),
-                           .probability = cause.probability,
-                           .log_evidence = cause.log_evidence,
-                           .mean = cause.mean,
-                           .q05 = cause.q05,
-                           .q95 = cause.q95,
-                           .words = cause_words(drift, cause)});
+    row.causes.push_back({.kind = kind_word(cause.kind),
+                          .subject = subject_of(drift, cause),
+                          .probability = cause.probability,
+                          .log_evidence = cause.log_evidence,
+                          .mean = cause.mean,
+                          .q05 = cause.q05,
+                          .q95 = cause.q95,
+                          .words = cause_words(drift, cause)});
   }
-  return told;
+  return row;
 }
 
 /// The newest month of an output, and how near the watches of its months and days are to an alarm.

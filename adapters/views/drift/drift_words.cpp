@@ -84,7 +84,8 @@ std::string_view separated_by(std::string_view effect, std::string_view other) {
 }
 
 /// What would tell the two likeliest causes apart; empty: nobody knows.
-std::string telling_words(const drift::SiteDrift& drift, const std::vector<drift::Cause>& causes) {
+std::string distinguishing_words(const drift::SiteDrift& drift,
+                                 const std::vector<drift::Cause>& causes) {
   const std::string_view measurement = separated_by(causes[0].effect, causes[1].effect);
   if (measurement.empty()) return "";
   return " What tells them apart: " +
@@ -224,7 +225,7 @@ std::string advice_words(const drift::SiteDrift& drift, const drift::ExplainedAl
   std::string words = look_at_words(alarm.causes.front().kind);
   const bool is_open = alarm.consequence == drift::ExplainedAlarm::Consequence::none &&
                        alarm.causes.front().probability < kSettled;
-  if (is_open) words += telling_words(drift, alarm.causes) + wait_words(drift, alarm);
+  if (is_open) words += distinguishing_words(drift, alarm.causes) + wait_words(drift, alarm);
   return words;
 }
 

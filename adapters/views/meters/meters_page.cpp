@@ -280,11 +280,12 @@ void write_temperature_section(Html& html, const MetersData& data) {
                              static_cast<int>(i));
   }
   html.markup("</div>\n");
-  std::string said;
+  std::string last_reason;
   for (const MeterPart& meter : data.meters) {
-    if (meter.no_temperature_because.empty() || meter.no_temperature_because == said) continue;
-    said = meter.no_temperature_because;  // a reason that all meters share is written once
-    html.element("p", said);
+    if (meter.no_temperature_because.empty() || meter.no_temperature_because == last_reason)
+      continue;
+    last_reason = meter.no_temperature_because;  // a reason that all meters share is written once
+    html.element("p", last_reason);
   }
   html.markup("</section>\n");
 }

@@ -77,8 +77,8 @@ std::optional<Prior> wide_prior(std::string_view name, const model::Building& no
   }
   const auto definition = model::find_parameter(name);
   const double drawn = definition ? (*definition)->get(nominal) : 0.0;
-  const double said = drawn > 0.0 ? drawn : parameter->if_none;
-  const double median = parameter->median > 0.0 ? parameter->median : said;
+  const double design_value = drawn > 0.0 ? drawn : parameter->if_none;
+  const double median = parameter->median > 0.0 ? parameter->median : design_value;
   if (!(median > 0.0)) return std::nullopt;
   return Prior{LogNormalPrior{.median = median, .log_sd = parameter->log_sd}};
 }

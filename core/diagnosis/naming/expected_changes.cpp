@@ -49,7 +49,7 @@ Eigen::MatrixXd changes_up_to(const SpanReader& reader, int days) {
 
 void expect_changes(const SiteProblem& site, const SignatureReader& reader, const SignatureFit& fit,
                     const std::vector<Candidate>& candidates, Predictor& predictor,
-                    const std::function<void(const ExpectedChange&)>& tell,
+                    const std::function<void(const ExpectedChange&)>& visit,
                     std::optional<int> since_day) {
   const SiteFacts facts = site.facts();
   const int days = site.drivers->hours.back().day_index + 1;
@@ -88,15 +88,15 @@ void expect_changes(const SiteProblem& site, const SignatureReader& reader, cons
     for (std::size_t i = run.candidate; i < candidates.size(); ++i) {
       if (!is_alike(run.candidate, candidates[i])) continue;
       if (since_day) {
-        tell({&candidates[i], run.values, *since_day, days,
-              Eigen::Map<const Eigen::VectorXd>(changes.data(), changes.size())});
+        visit({&candidates[i], run.values, *since_day, days,
+               Eigen::Map<const Eigen::VectorXd>(changes.data(), changes.size())});
         continue;
       }
       for (const Span& span : spans_of(candidates[i], days)) {
         const Eigen::Index to =
             span.to == days ? changes.cols() - 1 : Eigen::Index{span.to / kBlockDays};
-        tell({&candidates[i], run.values, span.from, span.to,
-              changes.col(to) - changes.col(span.from / kBlockDays)});
+        visit({&candidates[i], run.values, span.from, span.to,
+               changes.col(to) - changes.col(span.from / kBlockDays)});
       }
     }
   }

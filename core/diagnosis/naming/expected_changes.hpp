@@ -22,11 +22,11 @@ struct ExpectedChange {
 /// Every eight weeks a date is tried, and for what may end also how long it lasts. A shape costs
 /// one run of the model, its dates none: what may begin or not is run once for both.
 /// @param candidates  Must outlive what is told.
-/// @param tell        Called with each change, in the order of the candidates, in this thread.
+/// @param visit        Called with each change, in the order of the candidates, in this thread.
 /// @param since_day   The day on which all candidates began; absent: dates are tried.
 void expect_changes(const SiteProblem& site, const SignatureReader& reader, const SignatureFit& fit,
                     const std::vector<Candidate>& candidates, Predictor& predictor,
-                    const std::function<void(const ExpectedChange&)>& tell,
+                    const std::function<void(const ExpectedChange&)>& visit,
                     std::optional<int> since_day = {});
 
 }  // namespace recald::diagnosis

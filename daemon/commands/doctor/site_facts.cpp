@@ -150,11 +150,11 @@ Facts backups(const SiteConfig& site) {
 
 /// What a store of the current version tells; nothing of one that cannot be read, which other
 /// facts say.
-template <class Tell>
-Facts from_store(const SiteConfig& site, const Tell& tell) {
+template <class StoreFacts>
+Facts from_store(const SiteConfig& site, const StoreFacts& facts) {
   if (!is_there(site.store.file)) return {};
   const auto store = stores::open_untouched(site.store.file);
-  return store ? tell(**store) : Facts{};
+  return store ? facts(**store) : Facts{};
 }
 
 Facts events(const SiteConfig& site) {

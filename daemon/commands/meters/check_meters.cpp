@@ -19,7 +19,7 @@ MeterTrial try_on(const BusConfig& bus, BusAccess& access, const MeterConfig& me
 }  // namespace
 
 std::vector<TriedMeter> try_meters(const SiteConfig& site,
-                                   const std::function<void(const TriedMeter&)>& tell) {
+                                   const std::function<void(const TriedMeter&)>& report) {
   std::vector<TriedMeter> tried;
   for (const BusConfig& bus : site.buses) {
     const auto taken = why_bus_is_taken(bus);
@@ -30,7 +30,7 @@ std::vector<TriedMeter> try_meters(const SiteConfig& site,
         tried.push_back({&meter, &bus,
                          taken ? MeterTrial{.failures = {"was not tried: " + *taken}}
                                : try_on(bus, access, meter)});
-        tell(tried.back());
+        report(tried.back());
       }
     }
   }

@@ -84,11 +84,11 @@ Result<UnitRange> parse_units(std::string_view text) {
 }
 
 BusScan scan_bus(const BusConfig& bus, const UnitRange& units,
-                 const std::function<void(int, std::size_t)>& tell) {
+                 const std::function<void(int, std::size_t)>& report) {
   BusScan result;
   Scan scan{bus};
   for (int unit = units.first; unit <= units.last; ++unit) {
-    tell(unit, result.found.size());
+    report(unit, result.found.size());
     if (auto found = scan.look_at(unit)) result.found.push_back(std::move(*found));
     if (scan.ended_by()) {
       result.ended_by = scan.ended_by();

@@ -71,7 +71,7 @@ void calibrate_others(const CalibrateArguments& arguments, const Console& consol
   for (const ModelConfig& model : others) {
     CalibrateArguments of_model = arguments;
     of_model.model = model.kind;
-    std::ostringstream said;
+    std::ostringstream messages;
     if (model.energyplus) {  // hours may pass: its progress is seen
       const auto with_runs = open_with_runs(of_model, console);
       if (!with_runs) {
@@ -80,12 +80,12 @@ void calibrate_others(const CalibrateArguments& arguments, const Console& consol
         continue;
       }
     }
-    auto done = calibrate_aloud(of_model, {console.out, said, false, Console::Detail::little});
+    auto done = calibrate_aloud(of_model, {console.out, messages, false, Console::Detail::little});
     if (done) {
       models.push_back({model.kind, std::move(*done)});
       continue;
     }
-    std::string sentence = said.str();
+    std::string sentence = messages.str();
     while (sentence.ends_with('\n')) sentence.pop_back();
     sentence = sentence.substr(sentence.rfind('\n') + 1);
     models.push_back({model.kind, failure(ErrorCode::unsupported, sentence)});

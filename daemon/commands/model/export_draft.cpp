@@ -11,9 +11,9 @@ namespace recald::daemon {
 namespace {
 
 /// The zone that was asked for, else what the stamps' offsets are in: a zone of one offset.
-Guess<std::string> zone_of_draft(const std::string& told,
+Guess<std::string> zone_of_draft(const std::string& given,
                                  const std::vector<SurveyedExport>& exports) {
-  if (!told.empty()) return {told, "as told; months are local"};
+  if (!given.empty()) return {given, "as told; months are local"};
   for (const SurveyedExport& one : exports) {
     if (!one.utc_offset || one.utc_offset->count() % 3600 != 0) continue;
     const auto hours = one.utc_offset->count() / 3600;

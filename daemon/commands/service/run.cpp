@@ -23,8 +23,8 @@ int run_run(const RunArguments& arguments, const Console& console) {
                     "nothing to poll or receive; use recald replay for recorded readings",
                     arguments.site.filename().string()));
   }
-  const bool hears = any([](const MeterConfig& meter) { return meter.live || meter.mqtt; });
-  if (!hears && !config.http) {
+  const bool is_live = any([](const MeterConfig& meter) { return meter.live || meter.mqtt; });
+  if (!is_live && !config.http) {
     const auto pushed = std::ranges::find(config.meters, MeterSource::http, &MeterConfig::source);
     return console.fail(
         nowhere_to_push(config, pushed == config.meters.end() ? config.sensors.front() : *pushed));

@@ -55,21 +55,21 @@ int run_worker(const WorkerArguments& arguments, const Console& console) {
   }
   if (console.detail == Console::Detail::little) spdlog::set_level(spdlog::level::warn);
   const InterruptGuard guard;
-  const TellWords tell = [](const std::string& words) { spdlog::info("{}", words); };
+  const Report report = [](const std::string& words) { spdlog::info("{}", words); };
   std::jthread ingester;
   if (config->broker) {
     ingester = std::jthread{[&](const std::stop_token& stop) {
-      const IngestCounts counts = ingest(config->record, *config->broker, tell, stop);
-      tell(fmt::format("{} batches with {} intervals and months were taken, {} refused",
-                       counts.batches, counts.entries, counts.refused));
+      const IngestCounts counts = ingest(config->record, *config->broker, report, stop);
+      report(fmt::format("{} batches with {} intervals and months were taken, {} refused",
+                         counts.batches, counts.entries, counts.refused));
     }};
   }
   std::atomic<int> running = config->worker.jobs;
   std::vector<std::jthread> workers;
   for (int i = 1; i <= config->worker.jobs; ++i) {
     workers.emplace_back([&, i](const std::stop_token& stop) {
-      const int count = do_jobs(job_loop(*config, i, arguments.until_idle), tell, stop);
-      tell(fmt::format("{} jobs were done", count));
+      const int count = do_jobs(job_loop(*config, i, arguments.until_idle), report, stop);
+      report(fmt::format("{} jobs were done", count));
       --running;
     });
   }

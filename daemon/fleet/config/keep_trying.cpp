@@ -17,19 +17,19 @@ constexpr std::chrono::seconds kRetryMax{60};
 }  // namespace
 
 void keep_trying(const std::string& meanwhile, const std::function<Result<void>()>& work,
-                 const TellWords& tell, const std::stop_token& stop) {
+                 const Report& report, const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any stopped;
   auto wait = kRetryMin;
-  std::string said;
+  std::string last_reason;
   while (!stop.stop_requested()) {
     const auto begin = std::chrono::steady_clock::now();
     const Result<void> ended = work();
     if (ended || stop.stop_requested()) return;
     const bool has_worked = std::chrono::steady_clock::now() - begin > kRetryMax;
     if (has_worked) wait = kRetryMin;
-    if (std::exchange(said, ended.error().message) != ended.error().message || has_worked) {
-      tell(fmt::format("{}: {}; trying again", meanwhile, said));
+    if (std::exchange(last_reason, ended.error().message) != ended.error().message || has_worked) {
+      report(fmt::format("{}: {}; trying again", meanwhile, last_reason));
     }
     std::unique_lock lock{mutex};
     stopped.wait_for(lock, stop, wait, [] { return false; });

@@ -10,12 +10,12 @@
 namespace recald::daemon {
 
 /// Takes a sentence for people; safe from any thread.
-using TellWords = std::function<void(const std::string&)>;
+using Report = std::function<void(const std::string&)>;
 
 /// Does `work`, and after a failure again, 5 s to 60 s apart, until it returns without one or is
 /// asked to stop. Each new reason is reported once.
 /// @param meanwhile  What does not happen then: "no jobs are done".
 void keep_trying(const std::string& meanwhile, const std::function<Result<void>()>& work,
-                 const TellWords& tell, const std::stop_token& stop);
+                 const Report& report, const std::stop_token& stop);
 
 }  // namespace recald::daemon

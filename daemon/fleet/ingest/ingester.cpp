@@ -79,7 +79,7 @@ class Arrivals {
   bool is_new_connection_ = false;
 };
 
-mqtt::Message told(const std::string& site, const record::Watermark& watermark) {
+mqtt::Message watermark_message(const std::string& site, const record::Watermark& watermark) {
   return {.topic = record::watermark_topic(site),
           .payload = record::to_json(watermark),
           .is_retained = true};
@@ -95,9 +95,9 @@ metering::Instant time_of_arrival() {
 
 class Ingester {
  public:
-  Ingester(const BrokerConfig& broker, const TellWords& tell, const std::stop_token& stop,
+  Ingester(const BrokerConfig& broker, const Report& report, const std::stop_token& stop,
            IngestCounts& counts)
-      : broker_(broker), notify_(tell), stop_(stop), counts_(counts) {}
+      : broker_(broker), notify_(report), stop_(stop), counts_(counts) {}
 
   /// Takes batches until a stop is requested. @return or why the record or the broker cannot go on.
   Result<void> serve(postgres::Connection& record) {
@@ -134,7 +134,8 @@ class Ingester {
   Result<void> notify_all(postgres::Connection& record, mqtt::Connection& connection) {
     const auto all = TRY(record::watermarks(record));
     std::vector<mqtt::Message> messages;
-    for (const auto& [site, watermark] : all) messages.push_back(told(site, watermark));
+    for (const auto& [site, watermark] : all)
+      messages.push_back(watermark_message(site, watermark));
     publish(connection, messages);
     return {};
   }
@@ -177,12 +178,12 @@ class Ingester {
              fmt::format("the record has less of site '{}' than its gateway was told, as after "
                          "a backup was restored: the gateway sends everything again",
                          site));
-      return told(site, *watermark);
+      return watermark_message(site, *watermark);
     }
     if (watermark) {
       ++counts_.batches;
       counts_.entries += static_cast<std::int64_t>(batch->entries.size());
-      return told(site, *watermark);
+      return watermark_message(site, *watermark);
     }
     if (watermark.error().code == ErrorCode::io_failed) return tl::unexpected(watermark.error());
     ++counts_.refused;
@@ -200,7 +201,7 @@ class Ingester {
   }
 
   const BrokerConfig& broker_;
-  const TellWords& notify_;
+  const Report& notify_;
   const std::stop_token& stop_;
   IngestCounts& counts_;
   std::map<std::string, steady_clock::time_point> refused_;
@@ -208,17 +209,17 @@ class Ingester {
 
 }  // namespace
 
-IngestCounts ingest(const RecordConfig& record, const BrokerConfig& broker, const TellWords& tell,
+IngestCounts ingest(const RecordConfig& record, const BrokerConfig& broker, const Report& report,
                     const std::stop_token& stop) {
   IngestCounts counts;
-  Ingester ingester{broker, tell, stop, counts};
+  Ingester ingester{broker, report, stop, counts};
   keep_trying(
       "no batches are taken, and gateways keep what they have",
       [&]() -> Result<void> {
         auto connection = TRY(open_record(record));
         return ingester.serve(*connection);
       },
-      tell, stop);
+      report, stop);
   return counts;
 }
 

@@ -23,9 +23,9 @@ struct IngestCounts {
 
 /// Takes batches until a stop is requested. While the record is away it leaves the broker and tries
 /// again, 5 s to 60 s apart.
-/// @param tell  Gets a sentence about each change, and about each site whose batches are refused,
+/// @param report  Gets a sentence about each change, and about each site whose batches are refused,
 ///              at most once in ten minutes.
 [[nodiscard]] IngestCounts ingest(const RecordConfig& record, const BrokerConfig& broker,
-                                  const TellWords& tell, const std::stop_token& stop);
+                                  const Report& report, const std::stop_token& stop);
 
 }  // namespace recald::daemon

@@ -75,8 +75,8 @@ std::string why_it_ended(const system::ChildEnd& end, const fs::path& folder) {
 
 class Jobs {
  public:
-  Jobs(const JobLoop& loop, const TellWords& tell, const std::stop_token& stop)
-      : loop_(loop), notify_(tell), stop_(stop) {}
+  Jobs(const JobLoop& loop, const Report& report, const std::stop_token& stop)
+      : loop_(loop), notify_(report), stop_(stop) {}
 
   /// Until it is told to stop, or nothing is left. @return or why the record cannot be used.
   Result<void> work(postgres::Connection& record) {
@@ -192,25 +192,25 @@ class Jobs {
   }
 
   const JobLoop& loop_;
-  const TellWords& notify_;
+  const Report& notify_;
   const std::stop_token& stop_;
   int count_ = 0;
 };
 
 }  // namespace
 
-int do_jobs(const JobLoop& loop, const TellWords& tell, const std::stop_token& stop) {
+int do_jobs(const JobLoop& loop, const Report& report, const std::stop_token& stop) {
   std::error_code ignored;
   remove_leftovers(loop.worker.folder.empty() ? fs::temp_directory_path(ignored)
                                               : loop.worker.folder);
-  Jobs jobs{loop, tell, stop};
+  Jobs jobs{loop, report, stop};
   keep_trying(
       "no jobs are done",
       [&]() -> Result<void> {
         auto connection = TRY(open_record(loop.record));
         return jobs.work(*connection);
       },
-      tell, stop);
+      report, stop);
   return jobs.count();
 }
 

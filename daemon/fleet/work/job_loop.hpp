@@ -24,8 +24,8 @@ struct JobLoop {
 /// Takes jobs until it is told to stop. A job that kills its process, or runs out of memory or
 /// time, is given back, and set aside after some tries; other jobs go on. What is interrupted is
 /// handed back at once. While the record is away it tries again, 5 s to 60 s apart.
-/// @param tell  Gets a sentence about each job and each change. Called on this thread.
+/// @param report  Gets a sentence about each job and each change. Called on this thread.
 /// @return how many jobs were done or failed.
-[[nodiscard]] int do_jobs(const JobLoop& loop, const TellWords& tell, const std::stop_token& stop);
+[[nodiscard]] int do_jobs(const JobLoop& loop, const Report& report, const std::stop_token& stop);
 
 }  // namespace recald::daemon

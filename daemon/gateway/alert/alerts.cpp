@@ -16,7 +16,7 @@ namespace {
 using metering::Instant;
 using std::chrono::milliseconds;
 
-constexpr std::size_t kHeardMax = 1'000;
+constexpr std::size_t kRecentMax = 1'000;
 constexpr std::size_t kNotifiedMax = 1'000;
 /// How much of the past a new destination receives. The recovery of a store at the start is in it.
 constexpr std::chrono::hours kNotifiedAtFirst{1};
@@ -95,11 +95,11 @@ void Alerts::set_site(std::shared_ptr<const SiteConfig> site) {
   poll_after(rules_.gather);
 }
 
-void Alerts::heard(const StoreEvent& event) {
+void Alerts::observe(const StoreEvent& event) {
   if (event.kind == "store_refuses") store_refuses_ = true;
   if (event.kind == "store_accepts") store_refuses_ = false;
-  heard_.push_back({event, ports_.loop.now().monotonic});
-  keep_newest(heard_, kHeardMax);
+  recent_.push_back({event, ports_.loop.now().monotonic});
+  keep_newest(recent_, kRecentMax);
   poll_after(rules_.gather);
 }
 
@@ -122,7 +122,8 @@ void Alerts::poll() {
     }
   }
   if (!store_refuses_) {
-    std::erase_if(heard_, [&](const Heard& one) { return now.monotonic - one.at > rules_.gather; });
+    std::erase_if(recent_,
+                  [&](const Recent& one) { return now.monotonic - one.at > rules_.gather; });
   }
 }
 
@@ -171,8 +172,8 @@ Result<void> Alerts::add_stored(Outgoing& outgoing, const Moment& now, Pending& 
 }
 
 void Alerts::add_unstored(const Outgoing& outgoing, const Moment& now, Pending& pending) const {
-  for (const Heard& heard : heard_) {
-    const StoreEvent& event = heard.event;
+  for (const Recent& observe : recent_) {
+    const StoreEvent& event = observe.event;
     const bool is_stored = std::ranges::any_of(pending.events, [&](const StoreEvent& stored) {
       return stored.kind == event.kind && stored.subject == event.subject &&
              stored.time == event.time;

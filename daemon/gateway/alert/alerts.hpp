@@ -75,7 +75,7 @@ class Alerts {
   void start();
 
   /// Call with each event when it happens, whether or not the store accepts it.
-  void heard(const StoreEvent& event);
+  void observe(const StoreEvent& event);
 
   /// Continues with another site file. Destinations that stay receive what is new to them.
   void set_site(std::shared_ptr<const SiteConfig> site);
@@ -118,11 +118,11 @@ class Alerts {
   std::vector<Outgoing> outgoing_;
   Notified notified_;
   /// What may not be in the store yet, or not at all.
-  struct Heard {
+  struct Recent {
     StoreEvent event;
     std::chrono::milliseconds at;  ///< By the monotonic clock.
   };
-  std::deque<Heard> heard_;
+  std::deque<Recent> recent_;
   bool store_refuses_ = false;
   bool is_sending_ = false;
   Wakeup wakeup_;

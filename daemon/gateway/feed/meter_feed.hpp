@@ -2,6 +2,7 @@
 /// broker's messages, or pushed over HTTP.
 #pragma once
 
+#include <cassert>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,6 +36,9 @@ class MeterFeed {
   /// The last value of a sensor's quantity, in its unit.
   [[nodiscard]] virtual std::optional<double> now(std::uint32_t /*number*/) const { return {}; }
 
+  /// Whether its intervals come from a counter, whose samples are kept.
+  [[nodiscard]] virtual bool has_counter() const { return false; }
+
   // Of feeds by registers; pushed ones have none.
   [[nodiscard]] virtual StoreBatch take(const PolledRead& /*read*/, metering::Instant /*at*/) {
     return {};
@@ -50,7 +54,9 @@ class MeterFeed {
  protected:
   /// @pre progress is not empty
   MeterFeed(std::string id, std::vector<MeterProgress> progress)
-      : id_(std::move(id)), progress_(std::move(progress)) {}
+      : id_(std::move(id)), progress_(std::move(progress)) {
+    assert(!progress_.empty());
+  }
 
  private:
   std::string id_;

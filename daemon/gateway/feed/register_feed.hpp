@@ -49,6 +49,9 @@ class RegisterFeed : public MeterFeed {
   [[nodiscard]] MeterStatus status(metering::Instant now) const override;
   [[nodiscard]] std::optional<metering::Instant> measured_at() const override;
   [[nodiscard]] std::optional<double> now(std::uint32_t number) const override;
+  [[nodiscard]] bool has_counter() const override {
+    return std::holds_alternative<MeterTrack>(track_);
+  }
   [[nodiscard]] StoreBatch take(const PolledRead& read, metering::Instant at) override;
   [[nodiscard]] StoreBatch take_kept(const metering::RegisterSample& sample) override;
   void clock_was_set() override;

@@ -35,7 +35,7 @@ class Forwarding {
   using Notify = std::function<void(StoreEvent)>;
   using OnValue = std::function<void(const MeterValue&)>;
 
-  /// @param tell      Adds an event.
+  /// @param notify    Adds an event.
   /// @param on_value  Called on the loop's thread for each value of a meter.
   Forwarding(Ports ports, std::shared_ptr<const SiteConfig> site, metering::LocalCalendar calendar,
              Notify notify, OnValue on_value);

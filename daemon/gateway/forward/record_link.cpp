@@ -19,9 +19,10 @@ std::int64_t random_number() {
 
 }  // namespace
 
-bool covers(const record::Watermark& said, const record::Watermark& wanted) {
-  return said.outbox == wanted.outbox && said.until.entries >= wanted.until.entries &&
-         said.until.events >= wanted.until.events && said.until.results >= wanted.until.results;
+bool covers(const record::Watermark& watermark, const record::Watermark& wanted) {
+  return watermark.outbox == wanted.outbox && watermark.until.entries >= wanted.until.entries &&
+         watermark.until.events >= wanted.until.events &&
+         watermark.until.results >= wanted.until.results;
 }
 
 RecordLink::RecordLink(std::string topic, std::shared_ptr<Heard> heard,

@@ -18,7 +18,7 @@
 namespace recald::daemon {
 
 /// Whether a watermark confirms all that another one stands for.
-[[nodiscard]] bool covers(const record::Watermark& said, const record::Watermark& wanted);
+[[nodiscard]] bool covers(const record::Watermark& watermark, const record::Watermark& wanted);
 
 class RecordLink {
  public:

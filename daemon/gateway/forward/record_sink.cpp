@@ -69,8 +69,8 @@ class RecordSink final : public Sink {
   Sent send(RecordBatch batch, const std::stop_token& stop) {
     record::Watermark wanted{.outbox = batch.outbox, .until = batch.until()};
     // What was sent before the last failure may have arrived after it.
-    if (const auto said = link_->wait_for(wanted, link_->calls(), milliseconds{0}, stop)) {
-      return {.until = said->until};
+    if (const auto answer = link_->wait_for(wanted, link_->calls(), milliseconds{0}, stop)) {
+      return {.until = answer->until};
     }
     wanted.answers = batch.question = link_->next_question();
     std::string payload = record::to_json(batch);
@@ -90,9 +90,9 @@ class RecordSink final : public Sink {
       }
       if (!published) return waits(published.error().message);
       const auto left = std::chrono::ceil<milliseconds>(until - steady_clock::now());
-      const auto said = link_->wait_for(wanted, calls, left, stop);
-      if (said && covers(*said, wanted)) return {.until = said->until};
-      if (said) return {.outcome = Sent::Outcome::behind, .until = said->until};
+      const auto answer = link_->wait_for(wanted, calls, left, stop);
+      if (answer && covers(*answer, wanted)) return {.until = answer->until};
+      if (answer) return {.outcome = Sent::Outcome::behind, .until = answer->until};
       const bool is_over = stop.stop_requested() || steady_clock::now() >= until;
       if (is_over) break;
       // A record that has just come may have lost what was on its way.

@@ -59,10 +59,10 @@ void BusRunner::finish(const PolledRead& read) {
   poller_.answered(read.order, read.result, read.duration, read.at);
   count(read);
   const std::weak_ptr<BusRunner*> weak = self_;
-  const OnRead tell = on_read_;
+  const OnRead on_read = on_read_;
   Loop& loop = loop_;
   try {
-    tell(read);
+    on_read(read);
   } catch (...) {
     loop.post([weak] {
       if (const auto self = weak.lock()) (*self)->step();

@@ -39,9 +39,9 @@ MeterState state_of(const MeterStatus* status) {
 /// When the meter last gave a value, or since when it is waited for.
 Instant heard_from(const MeterStatus& status, std::chrono::seconds interval, Instant started) {
   Instant heard = started;
-  const auto hear = [&](std::optional<Instant> at) { heard = std::max(heard, at.value_or(heard)); };
-  hear(status.poll ? status.live.measured_at : status.live.read_at);
-  if (status.last_interval) hear(status.last_interval->start + interval);
+  const auto note = [&](std::optional<Instant> at) { heard = std::max(heard, at.value_or(heard)); };
+  note(status.poll ? status.live.measured_at : status.live.read_at);
+  if (status.last_interval) note(status.last_interval->start + interval);
   return heard;
 }
 

@@ -180,9 +180,11 @@ Result<void> Gateway::take_over_all(Store& memory, const std::function<void()>& 
         *number, "energy",
         [&](const metering::RegisterSample& sample) { samples.push_back(sample); });
     if (!read) return read;
-    const auto taken = samples.empty()
-                           ? take_over_intervals(*progress, memory, *number)
-                           : take_over_samples(*find_feed(progress->stored.number), samples);
+    MeterFeed& feed = *find_feed(progress->stored.number);
+    // One that a reload has made a pushed meter meanwhile has its intervals.
+    const auto taken = feed.has_counter() && !samples.empty()
+                           ? take_over_samples(feed, samples)
+                           : take_over_intervals(*progress, memory, *number);
     if (!taken) return taken;
   }
   return committer_.flush();
@@ -270,10 +272,10 @@ Result<void> Gateway::reload(const SiteConfig& site) {
   // Held reads were planned with the old descriptions, which may have changed.
   std::erase_if(held_, [&](const HeldRead& held) { return find_feed(held.meter) == nullptr; });
   for (auto& bus : opened) {
-    start(*bus);
     buses_.push_back(std::move(bus));
+    gather_feeds();
+    start(*buses_.back());
   }
-  gather_feeds();
   watch_meters_of(site);
   watch_sensors_of(site);
   keeper_.set_options(site.closing);

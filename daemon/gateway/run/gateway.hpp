@@ -1,5 +1,5 @@
-/// The core of the daemon: polls buses, turns registers into intervals, commits
-/// them, closes months.
+/// The core of the daemon: meters that are polled, told by a broker or pushed become intervals,
+/// which are committed, and months, which are closed.
 ///
 /// Everything here runs on the loop's thread. Access to the outside comes as ports, so all of it
 /// also runs on a virtual clock with scripted buses.
@@ -129,7 +129,7 @@ class Gateway {
   [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
   /// Opens the meters with source = "mqtt".
   [[nodiscard]] Result<std::vector<std::unique_ptr<MqttFeed>>> open_mqtt(const SiteConfig& site);
-  /// Opens the pushed meters and weather sensors of `site`; those already open keep their state.
+  /// Opens the pushed meters and weather sensors of `site`, which go on from those already open.
   [[nodiscard]] Result<std::vector<std::unique_ptr<PushedFeed>>> open_pushed(
       const SiteConfig& site);
   void gather_feeds();

@@ -31,7 +31,7 @@ bool is_new(const ChangedMeter& changed, const std::optional<StoredJob>& before)
 std::vector<StoreEvent> events_of(const StoredJob& job, bool has_named,
                                   const std::optional<StoredJob>& before) {
   std::vector<StoreEvent> events;
-  const auto tell = [&](Severity severity, std::string kind, std::string text) {
+  const auto add = [&](Severity severity, std::string kind, std::string text) {
     events.push_back({.time = job.ended.value_or(job.asked),
                       .severity = severity,
                       .kind = std::move(kind),
@@ -40,24 +40,24 @@ std::vector<StoreEvent> events_of(const StoredJob& job, bool has_named,
   };
   const std::string name = fmt::format("{} {}", name_of(job.kind), job.number);
   if (job.state == JobState::failed) {
-    tell(Severity::warning, fmt::format("{}_failed", name_of(job.kind)),
-         fmt::format("{} failed: {}", name, job.message));
+    add(Severity::warning, fmt::format("{}_failed", name_of(job.kind)),
+        fmt::format("{} failed: {}", name, job.message));
   }
   if (job.state != JobState::done) return events;
   if (!job.accepted) {
-    tell(Severity::warning, "calibration_rejected",
-         fmt::format("{} was not accepted: {}", name, job.message));
+    add(Severity::warning, "calibration_rejected",
+        fmt::format("{} was not accepted: {}", name, job.message));
   }
-  if (has_named) tell(Severity::info, "cause_named", fmt::format("{} {}", name, job.message));
+  if (has_named) add(Severity::info, "cause_named", fmt::format("{} {}", name, job.message));
   if (job.accepted && job.result.drift) {
     for (const DriftAlarm& alarm : job.result.drift->alarms) {
       if (!is_new(alarm, before)) continue;
-      tell(Severity::warning, "drift_alarm", alarm.sentence);
+      add(Severity::warning, "drift_alarm", alarm.sentence);
       events.back().subject = alarm.output;
     }
     for (const ChangedMeter& changed : job.result.drift->changed_meters) {
       if (!is_new(changed, before)) continue;
-      tell(Severity::warning, "drift_alarm", changed.sentence);
+      add(Severity::warning, "drift_alarm", changed.sentence);
       events.back().subject = changed.meter;
     }
   }

@@ -153,9 +153,9 @@ Result<void> JobRunner::cancel(std::int64_t number) {
 
 std::optional<JobProgress> JobRunner::progress() const {
   if (stage_ != Stage::running) return std::nullopt;
-  const auto said = watch_->said();
-  if (!said) return std::nullopt;
-  return JobProgress{current_.number, said->share, said->what};
+  const auto progress = watch_->progress();
+  if (!progress) return std::nullopt;
+  return JobProgress{current_.number, progress->share, progress->what};
 }
 
 void JobRunner::begin_next() {

@@ -11,7 +11,7 @@ namespace recald::daemon {
 /// Safe from any thread.
 class JobWatch {
  public:
-  struct Said {
+  struct Progress {
     std::string what;  ///< "calibrating the hourly model"
     double share;      ///< Of the whole job, 0…1.
   };
@@ -21,7 +21,8 @@ class JobWatch {
   /// @return whether to go on; if not, the job should stop early.
   bool say(const std::string& what, double share) {
     const std::lock_guard lock{mutex_};
-    said_ = Said{what, std::max(said_ ? said_->share : 0.0, std::clamp(share, 0.0, 1.0))};
+    progress_ =
+        Progress{what, std::max(progress_ ? progress_->share : 0.0, std::clamp(share, 0.0, 1.0))};
     return goes_on_;
   }
   [[nodiscard]] bool goes_on() const {
@@ -33,15 +34,15 @@ class JobWatch {
     goes_on_ = false;
   }
   /// Nothing if the job has said nothing yet.
-  [[nodiscard]] std::optional<Said> said() const {
+  [[nodiscard]] std::optional<Progress> progress() const {
     const std::lock_guard lock{mutex_};
-    return said_;
+    return progress_;
   }
 
  private:
   mutable std::mutex mutex_;
   bool goes_on_ = true;
-  std::optional<Said> said_;
+  std::optional<Progress> progress_;
 };
 
 }  // namespace recald::daemon

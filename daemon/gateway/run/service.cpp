@@ -97,7 +97,7 @@ StoreConfig upkeep_of(StoreConfig config, const RunningStore& running) {
 class Service {
  public:
   /// @param opener, signals  Belong to the process; they outlive this.
-  /// @param told             What an earlier service has told whom.
+  /// @param notified         What an earlier service has sent to whom.
   Service(OpenSite site, const ServiceOptions& options, RunningStore store, StoreOpener& opener,
           Signals& signals, Alerts::Notified notified)
       : site_(std::move(site)),
@@ -410,7 +410,7 @@ class Service {
 
   void on_event(const StoreEvent& event) {
     log_event(event);
-    alerts_.heard(event);
+    alerts_.observe(event);
   }
 
   static void log_event(const StoreEvent& event) {

@@ -164,8 +164,9 @@ Result<DriftSummary> follow(OpenSite site, metering::Instant now,
   modelled.facts.model_version = version_name(version, modelled.facts.model_version);
   modelled.facts.seed = context.seed;
   auto drift = TRY(follow_site(modelled, options, version.effects, context));
-  TRY(views::write_drift(site_line_of(modelled.site.config), drift, modelled.facts, metering::to_string(now),
-                         views::drift_json(drift, modelled.facts), folder));
+  TRY(views::write_drift(site_line_of(modelled.site.config), drift, modelled.facts,
+                         metering::to_string(now), views::drift_json(drift, modelled.facts),
+                         folder));
   outcome.forecasts = forecasts_of(drift, modelled.facts, now);
   SiteConfig hourly = modelled.site.config;
   const bool can_be_diagnosed = choose_model(hourly, ModelKind::hourly).has_value();

@@ -26,12 +26,12 @@ metering::TimeSpan followed_until(Instant now) {
 }  // namespace
 
 Upkeep::Upkeep(Store& store, Worker& checker, StoreConfig config, metering::LocalCalendar calendar,
-               std::function<void(StoreEvent)> tell, const UpkeepRules& rules)
+               std::function<void(StoreEvent)> report, const UpkeepRules& rules)
     : store_(store),
       checker_(checker),
       config_(std::move(config)),
       calendar_(std::move(calendar)),
-      notify_(std::move(tell)),
+      notify_(std::move(report)),
       rules_(rules),
       reserve_(
           std::make_shared<system::ReservedSpace>(reserve_file(config_), rules.reserve_bytes)) {
@@ -45,13 +45,13 @@ milliseconds Upkeep::maintain(Instant now) {
   const auto backed_up = back_up(now);
   if (!backed_up) {
     backup_.reset();
-    tell(now, backup_failure_, "backup_failed", backed_up.error().message);
+    report(now, backup_failure_, "backup_failed", backed_up.error().message);
   } else if (*backed_up == Progress::more) {
     return rules_.pause;
   }
   const auto deleted = delete_old(now);
   if (!deleted) {
-    tell(now, deleting_failure_, "old_not_deleted", deleted.error().message);
+    report(now, deleting_failure_, "old_not_deleted", deleted.error().message);
   } else if (*deleted == Progress::more) {
     return rules_.pause;
   }
@@ -60,7 +60,7 @@ milliseconds Upkeep::maintain(Instant now) {
 
 void Upkeep::hold_reserve(Instant now) {
   if (auto held = reserve_->hold(); !held) {
-    tell(now, reserve_failure_, "no_reserve", held.error().message);
+    report(now, reserve_failure_, "no_reserve", held.error().message);
   } else {
     reserve_failure_.clear();
   }
@@ -88,21 +88,21 @@ void Upkeep::end_backup(const Result<std::string>& damage, Instant now) {
   const auto backup = std::exchange(backup_, nullptr);
   if (damage && !damage->empty()) {
     damaged_on_ = calendar_.local_time(now).date;
-    tell(now, backup_failure_, "store_damaged",
-         "the store is damaged, as a check of its copy shows (" + *damage +
-             "); the copy was deleted, and earlier backups are kept. Restart recald: it recovers "
-             "the rows that can be read",
-         Severity::error);
+    report(now, backup_failure_, "store_damaged",
+           "the store is damaged, as a check of its copy shows (" + *damage +
+               "); the copy was deleted, and earlier backups are kept. Restart recald: it recovers "
+               "the rows that can be read",
+           Severity::error);
     return;
   }
   const auto kept = damage ? backup->keep() : tl::unexpected(damage.error());
   if (!kept) {
-    tell(now, backup_failure_, "backup_failed", kept.error().message);
+    report(now, backup_failure_, "backup_failed", kept.error().message);
     return;
   }
   backup_failure_.clear();
   for (const std::filesystem::path& file : prune_backups(config_)) {
-    tell(now, backup_failure_, "backup_failed", "'" + file.string() + "' cannot be deleted");
+    report(now, backup_failure_, "backup_failed", "'" + file.string() + "' cannot be deleted");
   }
 }
 
@@ -163,8 +163,8 @@ milliseconds Upkeep::until_next(Instant now) const {
 }
 
 /// The same failure hour after hour is one event.
-void Upkeep::tell(Instant now, std::string& known, const char* kind, const std::string& sentence,
-                  Severity severity) const {
+void Upkeep::report(Instant now, std::string& known, const char* kind, const std::string& sentence,
+                    Severity severity) const {
   if (std::exchange(known, sentence) == sentence) return;
   notify_({now, severity, kind, "", sentence});
 }

@@ -32,9 +32,9 @@ class Upkeep {
   /// @param store    Outlives the upkeep.
   /// @param checker  Checks each backup before it may replace an older one. For this object alone,
   ///                 and outlives it.
-  /// @param tell     Receives the events.
+  /// @param report     Receives the events.
   Upkeep(Store& store, Worker& checker, StoreConfig config, metering::LocalCalendar calendar,
-         std::function<void(StoreEvent)> tell, const UpkeepRules& rules = {});
+         std::function<void(StoreEvent)> report, const UpkeepRules& rules = {});
   /// Stops the checker's work early.
   ~Upkeep();
   Upkeep(const Upkeep&) = delete;
@@ -62,8 +62,8 @@ class Upkeep {
   [[nodiscard]] Result<Progress> delete_aged(metering::Instant now);
   [[nodiscard]] Result<Progress> delete_results(JobKind kind);
   [[nodiscard]] std::chrono::milliseconds until_next(metering::Instant now) const;
-  void tell(metering::Instant now, std::string& known, const char* kind,
-            const std::string& sentence, Severity severity = Severity::warning) const;
+  void report(metering::Instant now, std::string& known, const char* kind,
+              const std::string& sentence, Severity severity = Severity::warning) const;
 
   Store& store_;
   Worker& checker_;

@@ -249,8 +249,8 @@ void add_model_variances(const Metamodel& metamodel, std::size_t calibration_mon
   }
 }
 
-void say_how_months_are_modelled(const FittedMetamodel& fitted, const DesignCalibration& result,
-                                 std::size_t calibration_months, display::Warnings& warnings) {
+void report_form(const FittedMetamodel& fitted, const DesignCalibration& result,
+                 std::size_t calibration_months, display::Warnings& warnings) {
   if (fitted.form == MetamodelForm::seed || result.month_names.size() == calibration_months) return;
   const std::string& first = result.month_names[calibration_months];
   const std::string& last = result.month_names.back();
@@ -304,7 +304,7 @@ Result<Metamodel> make_metamodel(const doe::DesignFolder& design, const doe::Mon
   display::add_notes(fitted.notes, result.warnings);
   const auto months = all_months(design, measured, fitted.seed_form.has_value(), result.warnings);
   take_measurements(design, measured, months, result);
-  say_how_months_are_modelled(fitted, result, design.months.size(), result.warnings);
+  report_form(fitted, result, design.months.size(), result.warnings);
   return metamodel_of(fitted, options.metamodel, covered, month_inputs(design.inputs, months));
 }
 

@@ -182,8 +182,8 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
                                       const metering::LocalCalendar& calendar,
                                       const Recording& recording, const SiteWeather& weather,
                                       std::optional<Month> last_taught) {
-  display::Warnings said_elsewhere;
-  const std::vector<Month> months = months_with_weather(site, weather, said_elsewhere);
+  display::Warnings reported_elsewhere;
+  const std::vector<Month> months = months_with_weather(site, weather, reported_elsewhere);
   TRY(require_building_and_months(site, months.size()));
   SiteProblem problem;
   problem.nominal = *site.building;
@@ -193,13 +193,13 @@ Result<SiteProblem> make_site_problem(const SiteConfig& site,
   problem.month_roles =
       diagnosis::split_months(months, months_read(site, recording, months), split);
   // Months to be shown must not contribute to their own electricity profile.
-  std::vector<Month> told;
+  std::vector<Month> metered;
   for (std::size_t i = 0; i < months.size(); ++i) {
-    const bool is_told =
+    const bool is_metered =
         last_taught ? months[i] <= *last_taught : problem.month_roles[i] != diagnosis::Role::show;
-    if (is_told) told.push_back(months[i]);
+    if (is_metered) metered.push_back(months[i]);
   }
-  auto profile = TRY(model::hourly::fit_profile_without_plant(loads_of(*electricity, told),
+  auto profile = TRY(model::hourly::fit_profile_without_plant(loads_of(*electricity, metered),
                                                               *site.building, place, months));
   // One profile for all months: factors of calendar months would hide what a
   // diagnosis searches for.

@@ -93,8 +93,8 @@ Result<void> read_group(const SiteConfig& site, const FileGroup& group,
   csv::ReadingIntake intake{reader.options(), sink};
   for (const std::filesystem::path& file : group.files) {
     if (auto read = reader.read(file, intake); !read) return read;
-    auto said = TRY(intake.end_file(file.string()));
-    recording.files.push_back({file, std::move(said.issues), std::move(said.others)});
+    auto issues = TRY(intake.end_file(file.string()));
+    recording.files.push_back({file, std::move(issues.issues), std::move(issues.others)});
   }
   csv::ReadingsReport report = intake.finish();
   recording.files.back().issues.append(std::move(report.issues));

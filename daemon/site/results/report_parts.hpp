@@ -1,4 +1,4 @@
-/// What the pages of a calibration and of meters alone have in common.
+/// What pages of results have in common.
 #pragma once
 
 #include "adapters/views/frame/report_data.hpp"

@@ -164,7 +164,8 @@ void hybrid_work(BuildingYear& building, double share, Rng rng) {
 
 void add_schedule_changes(std::vector<HiddenChange>& all) {
   all.insert(all.end(),
-             {{"after_hours", 0.5, 4.0, "", has_stopping_fans, after_hours},
+             {// Midnight ends it.
+              {"after_hours", 0.5, 4.0, "", has_stopping_fans, after_hours},
               {"early_start", 0.75, 5.0, "", has_stopping_fans, early_start},
               {"weekend_operation", 2.0, 2.0, "", has_stopping_fans, weekend_operation},
               {"night_setback_missing", 0.3, 1.0, "", has_set_back, night_setback_missing},

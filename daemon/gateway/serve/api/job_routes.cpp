@@ -155,9 +155,9 @@ http::Response get_drift(const Served& served, const http::Request& request) {
   Json calibration;
   if (*job) {
     calibration = location(**job);
-    if (const auto& told = (*job)->result.drift) {
-      drift = results::outputs_json(*told);
-      alarms = results::alarms_json(*told);
+    if (const auto& found = (*job)->result.drift) {
+      drift = results::outputs_json(*found);
+      alarms = results::alarms_json(*found);
     }
   }
   return json_answer({{"calibration", calibration}, {"drift", drift}, {"alarms", alarms}});

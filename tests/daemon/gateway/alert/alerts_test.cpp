@@ -83,7 +83,7 @@ class AlertsTest : public ::testing::Test {
     if (!failing_.refuses) {
       ASSERT_TRUE(store_.commit({.events = std::exchange(waiting_, {})}).has_value());
     }
-    alerts_->heard(event);
+    alerts_->observe(event);
   }
   void happens(const std::string& kind, Severity severity = Severity::warning,
                const std::string& subject = "main") {

@@ -114,5 +114,19 @@ TEST_F(TakeOver, OneThatFailsLeavesNothingAndIsDoneAgain) {
   expect_whole();
 }
 
+// A reload has made it a meter whose readings are pushed: its counter is nobody's any more.
+TEST_F(TakeOver, OfAMeterThatIsPushedSinceItsIntervals) {
+  run_on(memory_, hours{3});
+  const auto kept = stored(memory_, 0);
+  ASSERT_GT(kept.size(), 150u);
+  site_ = testing::load_rig_site(folder_.path(),
+                                 testing::site_head("America/Chicago", "interval = \"1m\"\n") +
+                                     "[http]\nlisten = \"127.0.0.1:0\"\n"
+                                     "[[meter]]\nid = \"main\"\nsource = \"http\"\n"
+                                     "utility = \"electricity\"\n");
+  ASSERT_TRUE(open(disk_)->take_over(memory_).has_value());
+  EXPECT_EQ(stored(disk_, 0).size(), kept.size());
+}
+
 }  // namespace
 }  // namespace recald::daemon::take_over_test

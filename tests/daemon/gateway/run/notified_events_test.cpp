@@ -4,7 +4,7 @@
 #include "daemon/gateway/run/gateway.hpp"
 #include "tests/daemon/gateway/gateway_rig.hpp"
 
-namespace recald::daemon::told_events_test {
+namespace recald::daemon::notified_events_test {
 namespace {
 
 using metering::Instant;
@@ -108,4 +108,4 @@ TEST_F(ToldEvents, ReadingsThatAreKnownAreNoSignOfLife) {
 }
 
 }  // namespace
-}  // namespace recald::daemon::told_events_test
+}  // namespace recald::daemon::notified_events_test
