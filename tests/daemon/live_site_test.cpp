@@ -450,7 +450,7 @@ TEST_F(LiveSite, AJobThatIsToldToStopStops) {
   const auto outcome = work({}, std::chrono::sys_days{std::chrono::year{2022} / 2 / 1}, watch);
   ASSERT_FALSE(outcome.has_value());
   EXPECT_EQ(outcome.error().code, ErrorCode::cancelled);
-  EXPECT_LT(watch.said()->share, 0.1);  // it asked early on
+  EXPECT_LT(watch.progress()->share, 0.1);  // it asked early on
 }
 
 // It stands before the main meter, is of electricity too, and has never been read.

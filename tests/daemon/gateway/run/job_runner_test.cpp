@@ -141,11 +141,11 @@ TEST_F(JobRunnerTest, ItsEventIsStoredTogetherWithIt) {
 
 TEST_F(JobRunnerTest, ARunningJobSaysHowFarItIs) {
   JobWatch watch;
-  EXPECT_FALSE(watch.said().has_value());
+  EXPECT_FALSE(watch.progress().has_value());
   EXPECT_TRUE(watch.say("calibrating", 0.4));
   watch.say("calibrating again", 0.2);  // no nearer to its end
-  EXPECT_EQ(watch.said()->share, 0.4);
-  EXPECT_EQ(watch.said()->what, "calibrating again");
+  EXPECT_EQ(watch.progress()->share, 0.4);
+  EXPECT_EQ(watch.progress()->what, "calibrating again");
   watch.stop();
   EXPECT_FALSE(watch.say("following", 0.6));
 
