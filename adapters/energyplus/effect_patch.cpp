@@ -399,78 +399,83 @@ std::size_t scale_parameters(std::initializer_list<std::string_view> names, doub
 
 /// How an effect changes a model; none where it returns 0.
 struct Entry {
+  /// As the catalogue names it, with a value by which every model that can have the effect changes.
+  struct Parameter {
+    std::string_view name;
+    double trial;
+  };
   std::string_view effect;
+  std::vector<Parameter> parameters;  ///< Of the catalogue's, in the order of `apply`.
   std::size_t (*apply)(Values values, const ModelDocument& model, Json& objects);
-  std::vector<double> trial;  ///< Values by which every model that can have the effect changes.
 };
 
 // In order of their ids.
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all{
       {"after_hours",
+       {{"late_stop", 2.0}},
        [](Values v, const ModelDocument&, Json& objects) {
          return change_schedules(operation_fields(objects), "after_hours", moved_steps(v[0], true),
                                  objects);
-       },
-       {2.0}},
+       }},
       {"constant_speed_fans",
+       {{"constant_share", 0.5}},
        [](Values v, const ModelDocument&, Json& objects) {
          return run_fans_at_constant_speed(v[0], objects);
-       },
-       {0.5}},
+       }},
       {"early_start",
+       {{"lead", 2.0}, {"lead_per_cold", 0.0}},
        [](Values v, const ModelDocument&, Json& objects) {
          const double lead_h = v[0] + kUsualCold_K * v[1];
          return change_schedules(operation_fields(objects), "early_start",
                                  moved_steps(-lead_h, false), objects);
-       },
-       {2.0, 0.0}},
+       }},
       {"economiser_failed",
+       {{"failed_share", 0.5}},
        [](Values v, const ModelDocument&, Json& objects) {
          return fail_economisers(v[0], objects);
-       },
-       {0.5}},
+       }},
       {"equipment_step",
+       {{"power", 1.0}, {"following_use", 0.5}},
        [](Values v, const ModelDocument&, Json& objects) {
          return step_equipment(v[0], v[1], objects);
-       },
-       {1.0, 0.5}},
+       }},
       {"exterior_lighting",
-       [](Values v, const ModelDocument&, Json& objects) { return light_outside(v[0], objects); },
-       {1.0, 0.0}},
+       {{"power", 1.0}},
+       [](Values v, const ModelDocument&, Json& objects) { return light_outside(v[0], objects); }},
       {"night_setback_missing",
+       {{"missing_share", 0.5}},
        [](Values v, const ModelDocument&, Json& objects) {
          return weaken_set_backs(v[0], objects);
-       },
-       {0.5}},
+       }},
       {"outdoor_air_amount",
+       {{"change", 0.2}},
        [](Values v, const ModelDocument& model, Json& objects) {
          return scale_parameters({"outdoor_airflow"}, 1.0 + v[0], model, objects);
-       },
-       {0.2}},
+       }},
       {"server_room",
-       [](Values v, const ModelDocument&, Json& objects) { return add_servers(v[0], objects); },
-       {1.0, 0.5, 0.0}},
+       {{"power", 1.0}},
+       [](Values v, const ModelDocument&, Json& objects) { return add_servers(v[0], objects); }},
       {"solar_gain_change",
+       {{"solar_reduction", 0.2}},
        [](Values v, const ModelDocument& model, Json& objects) {
          return scale_parameters({"shgc_scale", "solar_transmittance_scale"}, 1.0 - v[0], model,
                                  objects);
-       },
-       {0.2, 0.0}},
+       }},
       {"vacancy",
-       [](Values v, const ModelDocument&, Json& objects) { return empty_rooms(v[0], objects); },
-       {0.5}},
+       {{"absent_share", 0.5}},
+       [](Values v, const ModelDocument&, Json& objects) { return empty_rooms(v[0], objects); }},
       {"weekend_operation",
+       {{"saturday_share", 0.8}, {"sunday_share", 0.8}},
        [](Values v, const ModelDocument&, Json& objects) {
          return change_schedules(operation_fields(objects), "weekend_operation",
                                  weekend_operation(v[0], v[1]), objects);
-       },
-       {0.8, 0.8}},
+       }},
       {"wind_infiltration",
+       {{"wind_factor", 0.2}, {"wind_exponent", 1.0}},
        [](Values v, const ModelDocument&, Json& objects) {
          return leak_in_wind(v[0], v[1], objects);
-       },
-       {0.2, 1.0}},
+       }},
   };
   return all;
 }
@@ -483,14 +488,29 @@ std::vector<std::string_view> patched_effects() {
   return ids;
 }
 
-Result<EffectPatch> find_effect_patch(const ModelDocument& model, std::string_view effect) {
+Result<EffectPatch> find_effect_patch(const ModelDocument& model, std::string_view effect,
+                                      std::span<const std::string> parameters) {
   const auto entry = std::ranges::find(entries(), effect, &Entry::effect);
   if (entry == entries().end()) {
     return failure(ErrorCode::unsupported,
                    fmt::format("an EnergyPlus model cannot be given the effect '{}'", effect));
   }
+  std::vector<std::size_t> places;  // of the entry's parameters among the values to come
+  std::vector<double> trial;
+  for (const Entry::Parameter& parameter : entry->parameters) {
+    const auto place = std::ranges::find(parameters, parameter.name);
+    if (place == parameters.end()) {
+      return failure(
+          ErrorCode::unsupported,
+          fmt::format("the effect '{}' comes without its parameter '{}', so an EnergyPlus "
+                      "model cannot be given it; `recald model revert` takes it out",
+                      effect, parameter.name));
+    }
+    places.push_back(static_cast<std::size_t>(place - parameters.begin()));
+    trial.push_back(parameter.trial);
+  }
   Json tried = model.objects;
-  const std::size_t changed = entry->apply(entry->trial, model, tried);
+  const std::size_t changed = entry->apply(trial, model, tried);
   if (changed == 0 || tried == model.objects) {
     return failure(ErrorCode::unsupported,
                    fmt::format("the EnergyPlus model has nothing that the effect '{}' would "
@@ -498,8 +518,11 @@ Result<EffectPatch> find_effect_patch(const ModelDocument& model, std::string_vi
                                "is in force; `recald model revert` takes it out",
                                effect));
   }
-  return EffectPatch{std::string{effect}, [entry = *entry, model](Values values, Json& objects) {
-                       entry.apply(values, model, objects);
+  return EffectPatch{std::string{effect},
+                     [entry = *entry, places, model](Values values, Json& objects) {
+                       std::vector<double> own;
+                       for (const std::size_t place : places) own.push_back(values[place]);
+                       entry.apply(own, model, objects);
                      }};
 }
 

@@ -99,8 +99,8 @@ struct PeriodConfig {
 
 /// An effect of the model version in force, one of whose values a parameter is.
 struct EffectOfModel {
-  std::string effect;  ///< Id in the catalogue.
-  std::size_t values;  ///< How many it has, without dates.
+  std::string effect;                   ///< Id in the catalogue.
+  std::vector<std::string> parameters;  ///< Their names in the catalogue, without dates.
   std::optional<metering::Day> from;
   std::optional<metering::Day> to;
 };

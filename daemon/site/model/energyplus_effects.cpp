@@ -50,8 +50,9 @@ Result<void> take_in_effects(const diagnosis::ModelVersion& version, ModelConfig
   for (const AddedEffect& effect : version.effects) {
     if (auto known = require_patch(effect); !known) return known;
     const std::size_t values = count_values(effect);
-    const auto of_model = std::make_shared<const EffectOfModel>(
-        EffectOfModel{effect.effect, values, effect.from, effect.to});
+    EffectOfModel taken{effect.effect, {}, effect.from, effect.to};
+    for (std::size_t j = 0; j < values; ++j) taken.parameters.push_back(effect.parameters[j].name);
+    const auto of_model = std::make_shared<const EffectOfModel>(std::move(taken));
     for (std::size_t j = 0; j < values; ++j) {
       const diagnosis::EffectParameterRecord& record = effect.parameters[j];
       model.parameters.push_back({.name = effect_parameter_name(effect, record),

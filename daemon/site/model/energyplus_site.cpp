@@ -46,9 +46,9 @@ Result<energyplus::TargetedParameter> find_parameter_in(const energyplus::ModelD
 
 Result<std::shared_ptr<const energyplus::ModelEffect>> find_effect_in(
     const energyplus::ModelDocument& model, const EffectOfModel& effect) {
-  auto patch = TRY(energyplus::find_effect_patch(model, effect.effect));
+  auto patch = TRY(energyplus::find_effect_patch(model, effect.effect, effect.parameters));
   return std::make_shared<const energyplus::ModelEffect>(
-      energyplus::ModelEffect{std::move(patch), effect.values, effect.from, effect.to});
+      energyplus::ModelEffect{std::move(patch), effect.parameters.size(), effect.from, effect.to});
 }
 
 void note_wide_targets(const std::vector<energyplus::TargetedParameter>& parameters,

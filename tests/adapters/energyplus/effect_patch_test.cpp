@@ -5,6 +5,7 @@
 
 #include "adapters/energyplus/model/schedule_values.hpp"
 #include "core/diagnosis/effects/support/effect.hpp"
+#include "tests/support/sample_building.hpp"
 
 namespace recald::energyplus {
 namespace {
@@ -51,9 +52,20 @@ ModelDocument office() {
           "25.2"};
 }
 
+/// The catalogue's parameters of an effect.
+std::vector<std::string> names_of(std::string_view effect) {
+  const auto building = recald::testing::sample_building();
+  const auto drivers = recald::testing::sample_drivers(building, 1);
+  std::vector<std::string> names;
+  for (const auto& one : diagnosis::find_effect(effect)->parameters({building, drivers, {}, {}})) {
+    names.push_back(one.name);
+  }
+  return names;
+}
+
 Json patched(const std::string& effect, std::vector<double> values) {
   const ModelDocument model = office();
-  const auto patch = find_effect_patch(model, effect);
+  const auto patch = find_effect_patch(model, effect, names_of(effect));
   EXPECT_TRUE(patch) << patch.error().message;
   Json objects = model.objects;
   if (patch) patch->apply(values, objects);
@@ -172,16 +184,34 @@ TEST(EffectPatch, NeutralValuesLeaveTheModelAsItIs) {
 
 TEST(EffectPatch, EachIsAnEffectOfTheCatalogue) {
   for (const std::string_view id : patched_effects()) {
-    EXPECT_NE(diagnosis::find_effect(id), nullptr) << id;
+    ASSERT_NE(diagnosis::find_effect(id), nullptr) << id;
+    const auto patch = find_effect_patch(office(), id, names_of(id));
+    EXPECT_TRUE(patch || patch.error().message.find("its parameter") == std::string::npos) << id;
   }
 }
 
+// Values come in the order of the names, whichever that is.
+TEST(EffectPatch, ParametersAreJoinedByName) {
+  const std::vector<std::string> turned{"sunday_share", "another", "saturday_share"};
+  const ModelDocument model = office();
+  const auto patch = find_effect_patch(model, "weekend_operation", turned);
+  ASSERT_TRUE(patch.has_value()) << patch.error().message;
+  Json objects = model.objects;
+  patch->apply(std::vector<double>{0.5, 7.0, 1.0}, objects);
+  EXPECT_EQ(objects, patched("weekend_operation", {1.0, 0.5}));
+  const std::vector<std::string> others{"saturday_share", "another"};
+  EXPECT_THAT(find_effect_patch(model, "weekend_operation", others).error().message,
+              HasSubstr("'weekend_operation' comes without its parameter 'sunday_share'"));
+}
+
 TEST(EffectPatch, WhatCannotBePatchedIsSaid) {
-  EXPECT_THAT(find_effect_patch(office(), "scale_fault").error().message,
+  EXPECT_THAT(find_effect_patch(office(), "scale_fault", names_of("scale_fault")).error().message,
               HasSubstr("an EnergyPlus model cannot be given the effect 'scale_fault'"));
   ModelDocument bare = office();
   bare.objects.erase("Fan:VariableVolume");
-  EXPECT_THAT(find_effect_patch(bare, "constant_speed_fans").error().message,
+  EXPECT_THAT(find_effect_patch(bare, "constant_speed_fans", names_of("constant_speed_fans"))
+                  .error()
+                  .message,
               HasSubstr("has nothing that the effect 'constant_speed_fans' would change"));
 }
 

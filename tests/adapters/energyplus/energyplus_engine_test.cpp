@@ -169,7 +169,8 @@ TEST_F(RealEnergyPlus, AParameterChangesTheMonths) {
 // Lamps outside from 10 February: every day before is as without them.
 TEST_F(RealEnergyPlus, AnEffectBeginsOnItsDay) {
   EngineSetup lit = setup();
-  const auto patch = find_effect_patch(lit.model, "exterior_lighting");
+  const auto patch = find_effect_patch(lit.model, "exterior_lighting",
+                                       std::vector<std::string>{"power", "share_in_plugs"});
   ASSERT_TRUE(patch.has_value()) << patch.error().message;
   const auto effect = std::make_shared<const ModelEffect>(
       ModelEffect{*patch, 2, std::chrono::year{2021} / 2 / 10, {}});
