@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/absent.hpp"
+#include "core/drift/alarm_kinds.hpp"
 
 namespace recald {
 
@@ -37,7 +38,7 @@ struct AlarmedDays {
 
 /// A possible cause of an alarm.
 struct AlarmCause {
-  std::string kind;
+  drift::CauseKind kind = drift::CauseKind::unknown;
   std::optional<std::string> subject;  ///< A parameter, use or output.
   double probability = kAbsent;
   double log_evidence = kAbsent;
@@ -53,12 +54,16 @@ struct DriftAlarm {
   std::optional<AlarmedDays> days = {};
   bool forecasts_are_true = false;
   std::vector<AlarmCause> causes;
-  std::string explained_until, consequence, sentence;
+  std::string explained_until;
+  drift::Consequence consequence = drift::Consequence::none;
+  std::string sentence;
 };
 
 /// A change that a meter's readings show without a model.
 struct ChangedMeter {
-  std::string meter, kind, since, seen;
+  std::string meter;
+  drift::MeterChangeKind kind = drift::MeterChangeKind::readings;
+  std::string since, seen;
   double factor = kAbsent;
   std::string sentence;
 };

@@ -20,6 +20,27 @@ SHAPE(recald::DailyEvidence, log_evidence, log_threshold, lag_one, month_factor)
 SHAPE(recald::OutputDrift, output, month, pvalue, log_evidence, log_threshold, change_within_year,
       daily);
 SHAPE(recald::AlarmedDays, raised, since, since_earliest, since_latest, excess);
+namespace recald::shapes {
+
+using drift::CauseKind;
+using drift::Consequence;
+using drift::MeterChangeKind;
+
+// What a later recald may write: an unknown cause, and no consequence that is known here.
+template <>
+struct Form<CauseKind>
+    : Words<CauseKind, CauseKind::unknown, CauseKind::nothing, CauseKind::parameter,
+            CauseKind::direction, CauseKind::meter, CauseKind::effect> {};
+template <>
+struct Form<Consequence>
+    : Words<Consequence, Consequence::none, Consequence::began_anew, Consequence::meter_set_aside> {
+};
+template <>
+struct Form<MeterChangeKind>
+    : Words<MeterChangeKind, MeterChangeKind::readings, MeterChangeKind::unit> {};
+
+}  // namespace recald::shapes
+
 SHAPE(recald::AlarmCause, kind, subject, probability, log_evidence, mean, q05, q95, words);
 SHAPE(recald::DriftAlarm, month, output, direction, evidence, since, since_earliest, since_latest,
       days, forecasts_are_true, causes, explained_until, consequence, sentence);

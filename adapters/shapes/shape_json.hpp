@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -59,6 +60,24 @@ struct Form<std::chrono::seconds> {
   static Json json_of(std::chrono::seconds span) { return span.count(); }
 };
 
+/// An enum that is written as its name.
+template <class Enum, Enum... kAll>
+struct Words {
+  static constexpr std::array kValues{kAll...};
+  static Json json_of(Enum value) { return name_of(value); }
+  static std::optional<Enum> find(std::string_view name) {
+    for (const Enum one : kValues) {
+      if (name_of(one) == name) return one;
+    }
+    return {};
+  }
+};
+
+template <class T>
+concept Worded = requires {
+  Form<T>::kValues;
+};
+
 /// What reading begins with.
 template <class T>
 [[nodiscard]] T blank() {
@@ -93,7 +112,8 @@ template <class T>
   }
 }
 
-/// What is missing or of another type is absent: no value, NaN, an empty text, false.
+/// What is missing or of another type is absent: no value, NaN, an empty text, false, the first
+/// name.
 /// @return whether it is of the type; of a list or an object, its elements may still be absent.
 template <class T>
 bool read(const Json& json, T& value) {
@@ -107,6 +127,10 @@ bool read(const Json& json, T& value) {
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (json.is_string()) value = json.get<std::string>();
     return json.is_string();
+  } else if constexpr (Worded<T>) {
+    const auto named = json.is_string() ? Form<T>::find(json.get<std::string>()) : std::nullopt;
+    value = named.value_or(Form<T>::kValues.front());
+    return named.has_value();
   } else if constexpr (is_optional<T>) {
     if (!read(json, value.emplace())) value.reset();
     return value.has_value() || json.is_null();

@@ -167,21 +167,18 @@ struct Numbered {
 
 /// An enum that is written as its name; of others than `kAll` nothing is read.
 template <class Enum, Enum... kAll>
-struct Named {
+struct Named : Words<Enum, kAll...> {
   static constexpr std::size_t kShown_max = 40;
-  static Json json_of(Enum value) { return name_of(value); }
   static Enum read(StrictReader& reader, const Parsed& json, const char* key) {
-    const auto text = reader.read<std::string>(json, key);
-    for (const Enum one : {kAll...}) {
-      if (name_of(one) == text) return one;
-    }
+    const auto named = Named::find(reader.read<std::string>(json, key));
+    if (named) return *named;
     std::vector<std::string_view> known;
-    for (const Enum one : {kAll...}) known.push_back(name_of(one));
+    for (const Enum one : Named::kValues) known.push_back(name_of(one));
     const std::string shown = json.dump();
     reader.refuse(
         key, fmt::format("is {}; it must be one of {}",
                          shown.size() > kShown_max ? "another" : shown, fmt::join(known, ", ")));
-    return std::array{kAll...}.front();
+    return Named::kValues.front();
   }
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/calibration/posterior/posterior.hpp"
+#include "core/drift/alarm_kinds.hpp"
 #include "core/drift/prequential.hpp"
 #include "core/drift/sequential.hpp"
 
@@ -17,17 +18,6 @@ struct Direction {
   std::string name;  ///< "electricity use"
   /// (outputs * months) in units, output-major, for an amplitude of 1 (a change by 100 %).
   std::vector<double> change;
-};
-
-enum class CauseKind : std::uint8_t {
-  nothing,    ///< A false alarm.
-  parameter,  ///< A calibration parameter has another value since.
-  direction,  ///< The building moved along a known direction: evenly, unevenly or more and more.
-  meter,      ///< One output's figures are multiplied by a factor: the meter, not the building.
-  /// An effect that the model lacks: all outputs moved, each by a share of its own, or one alone
-  /// and in no month by quite the same share, which a meter's factor is.
-  unknown,
-  effect,  ///< One that the model lacks, by name.
 };
 
 struct Cause {

@@ -16,7 +16,7 @@ constexpr int kMonthsToKnowAUnit = 6;
 int began_at(const SiteDrift& drift) {
   int month = 0;
   for (const ExplainedAlarm& one : drift.alarms) {
-    if (one.consequence == ExplainedAlarm::Consequence::began_anew) month = one.alarm.since;
+    if (one.consequence == Consequence::began_anew) month = one.alarm.since;
   }
   return month;
 }
@@ -53,7 +53,7 @@ void blame_meter(ExplainedAlarm& alarm, const MeterChange& change) {
   meter->probability += alone->probability;
   alone->probability = 0.0;
   // The refit seeks no factor as far off as a unit's.
-  if (change.kind == MeterChange::Kind::unit) {
+  if (change.kind == MeterChangeKind::unit) {
     meter->mean = meter->q05 = meter->q95 = change.factor;
   }
   std::ranges::stable_sort(alarm.causes, std::ranges::greater{}, &Cause::probability);
@@ -70,7 +70,7 @@ Result<void> Inquiries::evaluate(const PrequentialMonth& month) {
   }
   for (std::size_t i = 0; i < open_.size();) {
     const auto is_over = TRY(weigh(open_[i], month.month));
-    if (drift_.alarms[open_[i].alarm].consequence != ExplainedAlarm::Consequence::none) {
+    if (drift_.alarms[open_[i].alarm].consequence != Consequence::none) {
       // What was believed before has changed: the others are asked anew if they go on.
       open_.clear();
     } else if (is_over) {
@@ -174,11 +174,11 @@ Result<bool> Inquiries::weigh(Open& open, int month) {
   if (first.kind == CauseKind::meter && first.probability >= options_.act_at) {
     done = prequential_.set_aside(first.index, alarm.alarm.since, proceed_);
     daily_.set_aside(first.index);
-    alarm.consequence = ExplainedAlarm::Consequence::meter_set_aside;
+    alarm.consequence = Consequence::meter_set_aside;
   } else if (of_building(alarm.causes) >= options_.act_at) {
     done = prequential_.begin_at(alarm.alarm.since, proceed_);
     daily_.begin_at(alarm.alarm.since);
-    alarm.consequence = ExplainedAlarm::Consequence::began_anew;
+    alarm.consequence = Consequence::began_anew;
   } else {
     const bool is_chance = first.kind == CauseKind::nothing && first.probability >= options_.act_at;
     if (!change) name_newest(alarm, std::move(causes), month);

@@ -51,16 +51,12 @@ struct ExplainedAlarm {
   Alarm alarm;
   std::vector<Cause> causes;  ///< The likeliest first; empty: too little was known before.
   int explained_until = 0;    ///< The last month that the causes were weighed with.
-  enum class Consequence { none, began_anew, meter_set_aside } consequence = Consequence::none;
+  Consequence consequence = Consequence::none;
 };
 
 /// What is seen in a meter's readings, without any model.
 struct MeterChange {
-  enum class Kind {
-    unit,  ///< It counts in another one: months that are not the building's and have no forecast.
-    readings  ///< It gives usable ones for much less of the time; the others are filled.
-  };
-  Kind kind;
+  MeterChangeKind kind;
   std::string meter;
   std::string since;  ///< "2018-06"
   std::string seen;   ///< The month that settled it; with a unit its first one.

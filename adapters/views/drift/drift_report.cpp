@@ -38,12 +38,12 @@ std::string label_of(const drift::FollowedOutput& output) {
 std::string consequence_of(const drift::SiteDrift& drift, const drift::ExplainedAlarm& alarm) {
   const std::string since = month_text(month_of(drift, alarm.alarm.since));
   switch (alarm.consequence) {
-    case drift::ExplainedAlarm::Consequence::began_anew:
+    case drift::Consequence::began_anew:
       return fmt::format("The model has been learned again from the months since {}.", since);
-    case drift::ExplainedAlarm::Consequence::meter_set_aside:
+    case drift::Consequence::meter_set_aside:
       return fmt::format(
           "The meter is excluded: the model does not learn from its figures since {}.", since);
-    case drift::ExplainedAlarm::Consequence::none:
+    case drift::Consequence::none:
       break;
   }
   return "";

@@ -7,36 +7,6 @@
 namespace recald::views {
 namespace {
 
-const char* kind_word(drift::CauseKind kind) {
-  switch (kind) {
-    case drift::CauseKind::nothing:
-      return "nothing";
-    case drift::CauseKind::parameter:
-      return "parameter";
-    case drift::CauseKind::direction:
-      return "use";
-    case drift::CauseKind::meter:
-      return "meter";
-    case drift::CauseKind::unknown:
-      return "unknown";
-    case drift::CauseKind::effect:
-      return "effect";
-  }
-  return "unknown";
-}
-
-const char* consequence_word(drift::ExplainedAlarm::Consequence consequence) {
-  switch (consequence) {
-    case drift::ExplainedAlarm::Consequence::none:
-      return "none";
-    case drift::ExplainedAlarm::Consequence::began_anew:
-      return "began_anew";
-    case drift::ExplainedAlarm::Consequence::meter_set_aside:
-      return "meter_set_aside";
-  }
-  return "none";
-}
-
 /// The parameter, use, output or effect that a cause speaks of.
 std::optional<std::string> subject_of(const drift::SiteDrift& drift, const drift::Cause& cause) {
   const auto at = static_cast<std::size_t>(cause.index);
@@ -70,7 +40,7 @@ DriftAlarm alarm_of(const drift::SiteDrift& drift, const drift::ExplainedAlarm& 
                  .forecasts_are_true = alarm.is_calibrated,
                  .causes = {},
                  .explained_until = drift.month_name(explained.explained_until),
-                 .consequence = consequence_word(explained.consequence),
+                 .consequence = explained.consequence,
                  .sentence = explained_sentence(drift, explained)};
   if (alarm.days) {
     row.days =
@@ -79,7 +49,7 @@ DriftAlarm alarm_of(const drift::SiteDrift& drift, const drift::ExplainedAlarm& 
                     metering::to_string(alarm.days->since_latest), alarm.days->excess};
   }
   for (const drift::Cause& cause : explained.causes) {
-    row.causes.push_back({.kind = kind_word(cause.kind),
+    row.causes.push_back({.kind = cause.kind,
                           .subject = subject_of(drift, cause),
                           .probability = cause.probability,
                           .log_evidence = cause.log_evidence,
@@ -123,13 +93,12 @@ DriftSummary summary_of(const drift::SiteDrift& drift) {
     summary.alarms.push_back(alarm_of(drift, alarm));
   }
   for (const drift::MeterChange& change : drift.meter_changes) {
-    summary.changed_meters.push_back(
-        {.meter = change.meter,
-         .kind = change.kind == drift::MeterChange::Kind::unit ? "unit" : "readings",
-         .since = change.since,
-         .seen = change.seen,
-         .factor = change.factor,
-         .sentence = change.sentence});
+    summary.changed_meters.push_back({.meter = change.meter,
+                                      .kind = change.kind,
+                                      .since = change.since,
+                                      .seen = change.seen,
+                                      .factor = change.factor,
+                                      .sentence = change.sentence});
   }
   return summary;
 }

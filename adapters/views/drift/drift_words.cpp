@@ -223,8 +223,8 @@ std::string cause_words(const drift::SiteDrift& drift, const drift::Cause& cause
 
 std::string advice_words(const drift::SiteDrift& drift, const drift::ExplainedAlarm& alarm) {
   std::string words = look_at_words(alarm.causes.front().kind);
-  const bool is_open = alarm.consequence == drift::ExplainedAlarm::Consequence::none &&
-                       alarm.causes.front().probability < kSettled;
+  const bool is_open =
+      alarm.consequence == drift::Consequence::none && alarm.causes.front().probability < kSettled;
   if (is_open) words += distinguishing_words(drift, alarm.causes) + wait_words(drift, alarm);
   return words;
 }
@@ -239,7 +239,7 @@ std::string trust_words(const drift::SiteDrift& drift, std::size_t output) {
 }
 
 std::string meter_change_words(const drift::MeterChange& change) {
-  return change.sentence + (change.kind == drift::MeterChange::Kind::unit
+  return change.sentence + (change.kind == drift::MeterChangeKind::unit
                                 ? ". Its months since then are not compared."
                                 : ". Check the meter and its connection.");
 }

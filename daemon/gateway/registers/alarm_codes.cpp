@@ -54,13 +54,23 @@ constexpr std::array kEffectCodes{
 
 std::span<const EffectCode> effect_codes() { return kEffectCodes; }
 
-AlarmCode alarm_code(std::string_view kind, std::string_view subject) {
-  if (kind == "nothing") return AlarmCode::nothing;
-  if (kind == "parameter") return AlarmCode::parameter;
-  if (kind == "use") return AlarmCode::use;
-  if (kind == "meter") return AlarmCode::meter;
+AlarmCode alarm_code(drift::CauseKind kind, std::string_view subject) {
+  switch (kind) {
+    case drift::CauseKind::nothing:
+      return AlarmCode::nothing;
+    case drift::CauseKind::parameter:
+      return AlarmCode::parameter;
+    case drift::CauseKind::direction:
+      return AlarmCode::use;
+    case drift::CauseKind::meter:
+      return AlarmCode::meter;
+    case drift::CauseKind::unknown:
+      return AlarmCode::unknown;
+    case drift::CauseKind::effect:
+      break;
+  }
   const auto effect = std::ranges::find(kEffectCodes, subject, &EffectCode::effect);
-  if (kind != "effect" || effect == kEffectCodes.end()) return AlarmCode::unknown;
+  if (effect == kEffectCodes.end()) return AlarmCode::unknown;
   return static_cast<AlarmCode>(effect->number);
 }
 

@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "core/drift/alarm_kinds.hpp"
+
 namespace recald::daemon {
 
 /// A number is given once and keeps its meaning in all versions; that of a cause that is no longer
@@ -25,8 +27,7 @@ struct EffectCode {
 
 [[nodiscard]] std::span<const EffectCode> effect_codes();
 
-/// @param kind     As in `AlarmCause::kind`.
 /// @param subject  Of an effect, its id. One without a number is `unknown`.
-[[nodiscard]] AlarmCode alarm_code(std::string_view kind, std::string_view subject);
+[[nodiscard]] AlarmCode alarm_code(drift::CauseKind kind, std::string_view subject);
 
 }  // namespace recald::daemon

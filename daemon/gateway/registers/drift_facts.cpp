@@ -35,9 +35,9 @@ void add_evidence(DriftFacts& facts, const OutputDrift& output) {
 }
 
 void add_alarm(DriftFacts& facts, const DriftAlarm& alarm, const std::string& newest) {
-  const bool is_set_aside = alarm.consequence == "meter_set_aside";
-  const bool is_open =
-      alarm.month == newest || (alarm.consequence == "none" && alarm.explained_until == newest);
+  const bool is_set_aside = alarm.consequence == drift::Consequence::meter_set_aside;
+  const bool is_open = alarm.month == newest || (alarm.consequence == drift::Consequence::none &&
+                                                 alarm.explained_until == newest);
   if (!is_open && !is_set_aside) return;
   facts.state = is_set_aside ? DriftState::set_aside : DriftState::alarm;
   facts.since = month_in(alarm.since);
@@ -75,7 +75,7 @@ AlarmCode named_in(const std::string& document) {
   if (added == json.end() || !added->is_array() || added->empty() || !(*added)[0].is_string()) {
     return AlarmCode::none;
   }
-  return alarm_code("effect", (*added)[0].get<std::string>());
+  return alarm_code(drift::CauseKind::effect, (*added)[0].get<std::string>());
 }
 
 }  // namespace recald::daemon

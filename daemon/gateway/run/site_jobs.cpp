@@ -142,7 +142,7 @@ std::vector<StoredForecast> forecasts_of(const SiteDrift& drift, const RunFacts&
 /// identified and added.
 bool asks_for_a_name(const SiteDrift& drift) {
   return std::ranges::any_of(drift.alarms, [&](const ExplainedAlarm& alarm) {
-    return alarm.consequence == ExplainedAlarm::Consequence::began_anew &&
+    return alarm.consequence == drift::Consequence::began_anew &&
            (alarm.causes.front().kind == drift::CauseKind::unknown ||
             alarm.causes.front().kind == drift::CauseKind::effect) &&
            alarm.explained_until == drift.record.back().month;

@@ -38,7 +38,7 @@ std::vector<MeterChange> meter_changes_of(const Recording& recording, const std:
     for (const metering::LevelChange& change : record.level_changes) {
       if (change.kind != metering::LevelChangeKind::scale) continue;
       const std::string since = metering::to_string(change.since);
-      changes.push_back({MeterChange::Kind::unit, id, since, metering::to_string(change.seen),
+      changes.push_back({drift::MeterChangeKind::unit, id, since, metering::to_string(change.seen),
                          change.factor,
                          // The words begin with the meter's id.
                          display::meter_label(id) + change.words.substr(id.size())});
@@ -49,7 +49,7 @@ std::vector<MeterChange> meter_changes_of(const Recording& recording, const std:
     const auto lost = metering::find_lost_readings({begin, record.figures.end()},
                                                    static_cast<std::size_t>(learning_months));
     if (!lost) continue;
-    changes.push_back({MeterChange::Kind::readings, id, metering::to_string(lost->since),
+    changes.push_back({drift::MeterChangeKind::readings, id, metering::to_string(lost->since),
                        metering::to_string(lost->seen), lost->share_since / lost->share_before,
                        lost_words(display::meter_label(id), *lost)});
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "adapters/results/job_result_json.hpp"
+
 namespace recald::shapes {
 
 struct Inner {
@@ -95,6 +97,24 @@ TEST(ShapeJson, OfAListOnlyObjectsAreTaken) {
   ASSERT_EQ(many.size(), 2U);
   EXPECT_EQ(many[0].kWh, 2.0);
   EXPECT_TRUE(std::isnan(many[1].kWh));
+}
+
+TEST(ShapeJson, AnAlarmOfALaterReleaseHasAnUnknownCauseAndNoConsequence) {
+  const auto read_alarms = [](const std::string& kind, const std::string& consequence) {
+    return results::read_job_result(R"({"alarms":[{"output":"main_daily_kWh","causes":[{"kind":)" +
+                                    kind + R"(,"probability":0.6}],"consequence":)" + consequence +
+                                    "}]}")
+        .drift->alarms.at(0);
+  };
+  const DriftAlarm known = read_alarms(R"("use")", R"("meter_set_aside")");
+  EXPECT_EQ(known.causes.at(0).kind, drift::CauseKind::direction);
+  EXPECT_EQ(known.consequence, drift::Consequence::meter_set_aside);
+  for (const char* other : {R"("ghosts")", R"("")", "7", "null"}) {
+    const DriftAlarm alarm = read_alarms(other, other);
+    EXPECT_EQ(alarm.causes.at(0).kind, drift::CauseKind::unknown) << other;
+    EXPECT_EQ(alarm.causes.at(0).probability, 0.6) << other;
+    EXPECT_EQ(alarm.consequence, drift::Consequence::none) << other;
+  }
 }
 
 }  // namespace

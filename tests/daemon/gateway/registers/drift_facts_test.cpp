@@ -14,14 +14,14 @@ OutputDrift output(const std::string& name, double log_evidence, double daily = 
   return one;
 }
 
-DriftAlarm alarm(const std::string& output, const std::string& month, const std::string& kind,
+DriftAlarm alarm(const std::string& output, const std::string& month, drift::CauseKind kind,
                  const std::string& subject) {
   DriftAlarm one;
   one.output = output;
   one.month = month;
   one.since = "2026-01";
   one.explained_until = "2026-03";
-  one.consequence = "none";
+  one.consequence = drift::Consequence::none;
   one.causes.push_back({.kind = kind, .subject = subject, .probability = 0.8});
   return one;
 }
@@ -40,7 +40,8 @@ TEST(DriftFacts, TheHighestEvidenceOfAMetersOutputsCounts) {
 TEST(DriftFacts, AnOpenAlarmHasItsLikeliestCause) {
   DriftSummary drift;
   drift.outputs = {output("main_daily_kWh", 9.0)};
-  drift.alarms = {alarm("main_daily_kWh", "2026-02", "effect", "damper_stuck_open")};
+  drift.alarms = {
+      alarm("main_daily_kWh", "2026-02", drift::CauseKind::effect, "damper_stuck_open")};
   const DriftFacts facts = drift_of(drift, "main");
   EXPECT_EQ(facts.state, DriftState::alarm);
   EXPECT_EQ(static_cast<int>(facts.alarm), 105);
@@ -52,15 +53,15 @@ TEST(DriftFacts, AnOpenAlarmHasItsLikeliestCause) {
 TEST(DriftFacts, AnAlarmIsOverWhenForecastsBeganAnewBeforeTheNewestMonth) {
   DriftSummary drift;
   drift.outputs = {output("main_daily_kWh", 1.0)};
-  drift.alarms = {alarm("main_daily_kWh", "2026-02", "parameter", "infiltration")};
-  drift.alarms.front().consequence = "began_anew";
+  drift.alarms = {alarm("main_daily_kWh", "2026-02", drift::CauseKind::parameter, "infiltration")};
+  drift.alarms.front().consequence = drift::Consequence::began_anew;
   EXPECT_EQ(drift_of(drift, "main").state, DriftState::as_forecast);
   EXPECT_EQ(drift_of(drift, "main").alarm, AlarmCode::none);
   drift.alarms.front().month = "2026-03";
   EXPECT_EQ(drift_of(drift, "main").state, DriftState::alarm);
   EXPECT_EQ(drift_of(drift, "main").alarm, AlarmCode::parameter);
   // Nothing has come of it, and nobody weighs it any longer.
-  drift.alarms.front() = alarm("main_daily_kWh", "2025-02", "nothing", "");
+  drift.alarms.front() = alarm("main_daily_kWh", "2025-02", drift::CauseKind::nothing, "");
   drift.alarms.front().explained_until = "2026-01";
   EXPECT_EQ(drift_of(drift, "main").state, DriftState::as_forecast);
 }
@@ -68,8 +69,8 @@ TEST(DriftFacts, AnAlarmIsOverWhenForecastsBeganAnewBeforeTheNewestMonth) {
 TEST(DriftFacts, AMeterThatIsSetAsideStaysSo) {
   DriftSummary drift;
   drift.outputs = {output("main_daily_kWh", 1.0)};
-  drift.alarms = {alarm("main_peak_kW", "2025-02", "meter", "main_peak_kW")};
-  drift.alarms.front().consequence = "meter_set_aside";
+  drift.alarms = {alarm("main_peak_kW", "2025-02", drift::CauseKind::meter, "main_peak_kW")};
+  drift.alarms.front().consequence = drift::Consequence::meter_set_aside;
   EXPECT_EQ(drift_of(drift, "main").state, DriftState::set_aside);
   EXPECT_EQ(drift_of(drift, "main").alarm, AlarmCode::meter);
 }
@@ -77,8 +78,10 @@ TEST(DriftFacts, AMeterThatIsSetAsideStaysSo) {
 TEST(DriftFacts, AMeterMayChangeWithoutAModel) {
   DriftSummary drift;
   drift.outputs = {output("main_daily_kWh", 1.0)};
-  drift.changed_meters = {
-      {.meter = "main", .kind = "readings", .since = "2026-02-14", .seen = "2026-03"}};
+  drift.changed_meters = {{.meter = "main",
+                           .kind = drift::MeterChangeKind::readings,
+                           .since = "2026-02-14",
+                           .seen = "2026-03"}};
   EXPECT_EQ(drift_of(drift, "main").alarm, AlarmCode::meter);
   EXPECT_EQ(drift_of(drift, "main").since, std::chrono::year{2026} / 2);
   drift.changed_meters.front().seen = "2025-11";

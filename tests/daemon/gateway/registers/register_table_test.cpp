@@ -76,9 +76,9 @@ TEST(RegisterTable, AddressesAndCodesStayWhatTheyAre) {
             "40closed_forecast_q50:f32 42closed_forecast_q95:f32 44drift_state:u16 "
             "45alarm_code:u16 46alarm_since:u32 48alarm_probability:f32 50drift_evidence:f32 "
             "52expected_hour:u32 ");
-  EXPECT_EQ(alarm_code("effect", "after_hours"), AlarmCode{100});
-  EXPECT_EQ(alarm_code("effect", "damper_stuck_open"), AlarmCode{105});
-  EXPECT_EQ(alarm_code("effect", "wind_infiltration"), AlarmCode{139});
+  EXPECT_EQ(alarm_code(drift::CauseKind::effect, "after_hours"), AlarmCode{100});
+  EXPECT_EQ(alarm_code(drift::CauseKind::effect, "damper_stuck_open"), AlarmCode{105});
+  EXPECT_EQ(alarm_code(drift::CauseKind::effect, "wind_infiltration"), AlarmCode{139});
 }
 
 TEST(AlarmCodes, EveryEffectOfTheCatalogueHasItsOwn) {
@@ -88,15 +88,15 @@ TEST(AlarmCodes, EveryEffectOfTheCatalogueHasItsOwn) {
     EXPECT_TRUE(numbers.insert(code.number).second) << code.effect;
   }
   for (const diagnosis::Effect& effect : diagnosis::catalogue()) {
-    EXPECT_GE(static_cast<int>(alarm_code("effect", effect.id)), 100)
+    EXPECT_GE(static_cast<int>(alarm_code(drift::CauseKind::effect, effect.id)), 100)
         << effect.id << " needs the next number in alarm_codes.cpp";
   }
-  EXPECT_EQ(alarm_code("effect", "ghosts"), AlarmCode::unknown);
-  EXPECT_EQ(alarm_code("nothing", ""), AlarmCode::nothing);
-  EXPECT_EQ(alarm_code("parameter", "infiltration"), AlarmCode::parameter);
-  EXPECT_EQ(alarm_code("use", "electricity use"), AlarmCode::use);
-  EXPECT_EQ(alarm_code("meter", "main_daily_kWh"), AlarmCode::meter);
-  EXPECT_EQ(alarm_code("unknown", ""), AlarmCode::unknown);
+  EXPECT_EQ(alarm_code(drift::CauseKind::effect, "ghosts"), AlarmCode::unknown);
+  EXPECT_EQ(alarm_code(drift::CauseKind::nothing, ""), AlarmCode::nothing);
+  EXPECT_EQ(alarm_code(drift::CauseKind::parameter, "infiltration"), AlarmCode::parameter);
+  EXPECT_EQ(alarm_code(drift::CauseKind::direction, "electricity use"), AlarmCode::use);
+  EXPECT_EQ(alarm_code(drift::CauseKind::meter, "main_daily_kWh"), AlarmCode::meter);
+  EXPECT_EQ(alarm_code(drift::CauseKind::unknown, ""), AlarmCode::unknown);
 }
 
 TEST(RegisterValues, AreBigEndianAndNaNWhereThereIsNone) {

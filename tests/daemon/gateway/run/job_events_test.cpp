@@ -70,8 +70,10 @@ TEST(JobEvents, AnAlarmIsTheSameAMonthLater) {
 TEST(JobEvents, AMeterThatHasChangedIsToldOnce) {
   StoredJob now = ended(JobState::done, true, "");
   now.result.drift.emplace();
-  now.result.drift->changed_meters.push_back(
-      {.meter = "main", .kind = "scale", .since = "2025-09", .sentence = "main counts half."});
+  now.result.drift->changed_meters.push_back({.meter = "main",
+                                              .kind = drift::MeterChangeKind::unit,
+                                              .since = "2025-09",
+                                              .sentence = "main counts half."});
   const auto events = events_of(now, false, {});
   EXPECT_THAT(told(events), ElementsAre("drift_alarm: main counts half."));
   EXPECT_EQ(events.at(0).subject, "main");
