@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 #include <string_view>
@@ -17,6 +18,12 @@ using curl::Handle;
 using curl::List;
 
 constexpr std::size_t kAnswerBytes = 500;
+
+/// What servers answer to a message that they will not take another time either: 400, 413, 422 over
+/// HTTP, 552 (its length) and 554 (its content) over SMTP.
+constexpr std::array kRefusals{400L, 413L, 422L};
+constexpr long kMailTooLong = 552;
+constexpr long kMailRefused = 554;
 
 int ask_whether_to_stop(void* stop, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
   return static_cast<const std::stop_token*>(stop)->stop_requested() ? 1 : 0;
@@ -58,7 +65,10 @@ Result<void> deliver(const Handle& handle, const std::string& url) {
   if (outcome.code == CURLE_ABORTED_BY_CALLBACK) {
     return failure(ErrorCode::cancelled, "the delivery was stopped");
   }
-  return failure(ErrorCode::io_failed,
+  long status = 0;
+  curl_easy_getinfo(handle.get(), CURLINFO_RESPONSE_CODE, &status);
+  const bool is_refused = status == kMailTooLong || status == kMailRefused;
+  return failure(is_refused ? ErrorCode::out_of_range : ErrorCode::io_failed,
                  fmt::format("{} did not take the message: {}", host_of(url), outcome.why));
 }
 
@@ -109,7 +119,8 @@ Result<void> post_json(const Webhook& webhook, const std::string& document,
                                 .body = document},
                                stop));
   if (answer.status >= 200 && answer.status < 300) return {};
-  return failure(ErrorCode::io_failed,
+  const bool is_refused = std::ranges::find(kRefusals, answer.status) != kRefusals.end();
+  return failure(is_refused ? ErrorCode::out_of_range : ErrorCode::io_failed,
                  fmt::format("{} did not take the message: it answered with status {}",
                              host_of(webhook.url), answer.status));
 }

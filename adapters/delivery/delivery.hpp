@@ -54,12 +54,13 @@ struct Answer {
 [[nodiscard]] Result<Answer> post(const Post& post, const std::stop_token& stop);
 
 /// Posts a JSON document; does not follow redirections.
-/// @return or io_failed: no server, no trust, a status other than 2xx; cancelled.
+/// @return or io_failed: no server, no trust, a status other than 2xx; out_of_range: a status that
+/// refuses what is in the message; cancelled.
 [[nodiscard]] Result<void> post_json(const Webhook& webhook, const std::string& document,
                                      const std::stop_token& stop);
 
 /// @return or io_failed: no server, no trust, or the server accepted the mail for nobody;
-/// cancelled.
+/// out_of_range: it refuses what is in the mail; cancelled.
 [[nodiscard]] Result<void> send_mail(const MailServer& server, const Mail& mail,
                                      const std::stop_token& stop);
 

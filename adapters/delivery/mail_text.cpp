@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "core/text/printable.hpp"
+
 namespace recald::delivery {
 namespace {
 
@@ -69,10 +71,10 @@ std::string mail_text(const Mail& mail) {
       "From: {}\r\nTo: {}\r\nSubject: {}\r\nDate: {}\r\nMessage-ID: <{}@{}>\r\n"
       "MIME-Version: 1.0\r\nContent-Type: text/plain; charset=utf-8\r\n"
       "Content-Transfer-Encoding: base64\r\nAuto-Submitted: auto-generated\r\n\r\n{}",
-      mail.from, fmt::join(mail.to, ",\r\n "), encoded_header(mail.subject),
+      mail.from, fmt::join(mail.to, ",\r\n "), encoded_header(printable(mail.subject)),
       fmt::format("{:%a, %d %b %Y %T} +0000",
                   fmt::gmtime(std::chrono::system_clock::to_time_t(mail.date))),
-      mail.id, domain, encoded_body(mail.text));
+      mail.id, domain, encoded_body(printable(mail.text, "\n\t")));
 }
 
 }  // namespace recald::delivery

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +16,13 @@
 namespace recald {
 
 enum class Severity : std::uint8_t { info, warning, error };
+
+/// Of what an event says, in bytes: what is longer is shortened when it is stored, and when it is
+/// read from a store or a message of before.
+inline constexpr std::size_t kEventTextMax = 4'000;
+inline constexpr std::size_t kEventWordMax = 200;  ///< Of its kind, and of its subject.
+/// Of events that are read at once; one longer event is read alone.
+inline constexpr std::size_t kEventsBytesMax = 1'000'000;
 
 /// An event that people may ask about.
 struct StoreEvent {
@@ -37,11 +47,19 @@ class EventStore {
   /// @return how many; fewer than `rows_max` when none are left.
   virtual Result<int> delete_events(metering::Instant keep_from, int rows_max) = 0;
 
-  /// Newest first.
+  /// Calls visit for each event that first happened until `until`, the newest first, as long as it
+  /// returns true: none is held longer than its visit.
+  virtual Result<void> for_each_event(metering::Instant until,
+                                      const std::function<bool(const StoreEvent&)>& visit) = 0;
+
+  /// The newest first; fewer than `limit` where they exceed `kEventsBytesMax`.
   virtual Result<std::vector<StoreEvent>> events(int limit) = 0;
 
-  /// Those with a greater number, in order of their numbers.
+  /// Those with a greater number, in order of their numbers; fewer than `limit` likewise.
   virtual Result<std::vector<StoreEvent>> events_after(std::int64_t number, int limit) = 0;
+
+  /// Meters whose silence was reported and not their answering again.
+  virtual Result<std::set<std::string>> silent_meters() = 0;
 
   /// How far a destination outside has been told; nothing for an unknown one.
   virtual Result<std::optional<std::int64_t>> cursor(const std::string& destination) = 0;

@@ -42,6 +42,10 @@ struct RawSample {
   double value;  ///< In the field's unit; NaN: the register's "no value".
 };
 
+/// In bytes, of an edit; what is longer is refused where it comes in.
+inline constexpr std::size_t kReasonMax = 2'000;
+inline constexpr std::size_t kAuthorMax = 200;
+
 /// Readings that a person entered.
 struct StoreEdit {
   metering::Instant time;

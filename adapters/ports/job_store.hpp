@@ -16,6 +16,9 @@ namespace recald {
 enum class JobKind : std::uint8_t { calibration, diagnosis };
 enum class JobState : std::uint8_t { waiting, running, done, failed, cancelled };
 
+/// Of a job's message, in bytes: what is longer is shortened when it is stored.
+inline constexpr std::size_t kJobMessageMax = 16'000;
+
 /// A long task and, once it is done, its result.
 struct StoredJob {
   std::int64_t number = 0;  ///< Set by the store; 1, 2, 3 …

@@ -9,6 +9,7 @@
 #include "adapters/record/job_rows.hpp"
 #include "adapters/record/schema.hpp"
 #include "adapters/record/values.hpp"
+#include "core/text/limited.hpp"
 
 namespace recald::record {
 namespace {
@@ -311,9 +312,9 @@ Result<void> Taking::put_events() {
     numbers.add(event_seq_ + event.number - known_.events);
     times.add(seconds_of(event.time));
     severities.add(static_cast<std::int64_t>(event.severity));
-    kinds.add(text_of(event.kind));
-    subjects.add(text_of(event.subject));
-    texts.add(text_of(event.text));
+    kinds.add(text_of(limited(event.kind, kEventWordMax)));
+    subjects.add(text_of(limited(event.subject, kEventWordMax)));
+    texts.add(text_of(limited(event.text, kEventTextMax)));
     counts.add(std::int64_t{event.count});
     lasts.add(seconds_of(event.last.value_or(event.time)));
   }

@@ -9,6 +9,7 @@
 #include "adapters/sqlite/tables/rows.hpp"
 #include "adapters/sqlite/tables/tables.hpp"
 #include "core/metering/registers/placement.hpp"
+#include "core/text/limited.hpp"
 
 namespace recald::sqlite {
 
@@ -168,7 +169,11 @@ Result<bool> BatchWriter::count_event(const StoreEvent& event) {
 }
 
 Result<void> BatchWriter::put_events(const StoreBatch& batch) {
-  for (const StoreEvent& event : batch.events) {
+  for (const StoreEvent& whole : batch.events) {
+    StoreEvent event = whole;
+    event.kind = limited(event.kind, kEventWordMax);
+    event.subject = limited(event.subject, kEventWordMax);
+    event.text = limited(event.text, kEventTextMax);
     const auto counted = TRY(event.is_counted ? count_event(event) : Result<bool>{false});
     if (counted) continue;
     TRY(bound(statements_->insert_event, event.time, event.severity, event.kind, event.subject,

@@ -17,6 +17,7 @@
 #include "adapters/sqlite/tables/sample_table.hpp"
 #include "adapters/sqlite/tables/schema.hpp"
 #include "adapters/sqlite/tables/tables.hpp"
+#include "core/text/limited.hpp"
 
 namespace recald::sqlite {
 
@@ -27,17 +28,33 @@ namespace {
 
 constexpr std::string_view kEventColumns = "t, severity, kind, subject, text, count, last, number";
 
+StoreEvent read_event(Columns columns) {
+  const auto text = [&](std::size_t bytes_max) {
+    return limited(columns.next<std::string>(), bytes_max);
+  };
+  return {.time = columns,
+          .severity = columns,
+          .kind = text(kEventWordMax),
+          .subject = text(kEventWordMax),
+          .text = text(kEventTextMax),
+          .count = columns,
+          .last = columns.next<std::optional<Instant>>(),
+          .number = columns};
+}
+
+/// Until they exceed `kEventsBytesMax`.
 Result<std::vector<StoreEvent>> read_events(Statement& query) {
-  return all_rows(query, [](Columns columns) {
-    return StoreEvent{.time = columns,
-                      .severity = columns,
-                      .kind = columns,
-                      .subject = columns,
-                      .text = columns,
-                      .count = columns,
-                      .last = columns.next<std::optional<Instant>>(),
-                      .number = columns};
-  });
+  std::vector<StoreEvent> events;
+  std::size_t bytes = 0;
+  while (bytes < kEventsBytesMax) {
+    const auto row = TRY(query.step());
+    if (!row) break;
+    events.push_back(read_event(Columns{query}));
+    const StoreEvent& event = events.back();
+    bytes += sizeof(StoreEvent) + event.kind.size() + event.subject.size() + event.text.size();
+  }
+  query.reset();
+  return events;
 }
 
 }  // namespace
@@ -195,6 +212,35 @@ Result<std::optional<StoredJob>> SqliteStore::oldest_job_beyond(JobKind kind, in
 }
 
 Result<void> SqliteStore::delete_job(std::int64_t number) { return remove_job(database_, number); }
+
+Result<void> SqliteStore::for_each_event(Instant until,
+                                         const std::function<bool(const StoreEvent&)>& visit) {
+  auto query = TRY(database_.prepare(fmt::format(
+      "SELECT {} FROM event WHERE t <= ? ORDER BY t DESC, number DESC", kEventColumns)));
+  bound(query, until);
+  for (;;) {
+    const auto row = TRY(query.step());
+    if (!row || !visit(read_event(Columns{query}))) break;
+  }
+  query.reset();
+  return {};
+}
+
+Result<std::set<std::string>> SqliteStore::silent_meters() {
+  // The columns before its text alone: how long texts are does not matter.
+  auto query =
+      TRY(database_.prepare("SELECT subject, kind FROM event WHERE kind IN ('meter_silent', "
+                            "'meter_answers') ORDER BY t, number"));
+  std::set<std::string> silent;
+  TRY(for_each_row(query, [&](const Statement& row) {
+    if (row.text(1) == "meter_silent") {
+      silent.insert(row.text(0));
+    } else {
+      silent.erase(row.text(0));
+    }
+  }));
+  return silent;
+}
 
 Result<std::vector<StoreEvent>> SqliteStore::events(int limit) {
   auto query = TRY(database_.prepare(

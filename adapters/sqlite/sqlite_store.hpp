@@ -47,7 +47,10 @@ class SqliteStore final : public Store {
   Result<int> put_closing_rules(std::uint32_t meter, const std::string& rules) override;
   Result<int> delete_events(metering::Instant keep_from, int rows_max) override;
   Result<std::vector<StoreEvent>> events(int limit) override;
+  Result<void> for_each_event(metering::Instant until,
+                              const std::function<bool(const StoreEvent&)>& visit) override;
   Result<std::vector<StoreEvent>> events_after(std::int64_t number, int limit) override;
+  Result<std::set<std::string>> silent_meters() override;
   Result<std::optional<std::int64_t>> cursor(const std::string& destination) override;
   Result<void> put_cursor(const std::string& destination, std::int64_t position) override;
   Result<void> keep_outbox_for(const std::vector<std::string>& destinations) override;

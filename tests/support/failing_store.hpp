@@ -131,6 +131,15 @@ class FailingStore final : public Store {
     if (refuses) return refusal();
     return behind_.events(limit);
   }
+  Result<void> for_each_event(metering::Instant until,
+                              const std::function<bool(const StoreEvent&)>& visit) override {
+    if (refuses) return refusal();
+    return behind_.for_each_event(until, visit);
+  }
+  Result<std::set<std::string>> silent_meters() override {
+    if (refuses) return refusal();
+    return behind_.silent_meters();
+  }
   Result<std::int64_t> add_job(const StoredJob& job) override {
     if (refuses) return refusal();
     return behind_.add_job(job);

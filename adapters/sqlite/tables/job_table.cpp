@@ -7,6 +7,7 @@
 #include "adapters/results/job_result_json.hpp"
 #include "adapters/sqlite/tables/rows.hpp"
 #include "adapters/sqlite/tables/tables.hpp"
+#include "core/text/limited.hpp"
 
 namespace recald::sqlite {
 namespace {
@@ -20,7 +21,8 @@ constexpr auto kColumns =
 template <class... More>
 Statement& bind_job(Statement& statement, const StoredJob& job, const More&... more) {
   return bound(statement, job.kind, job.state, job.asked_by, job.asked, job.started, job.ended,
-               job.accepted, job.message, job.folder, job.result.document, job.tries, more...);
+               job.accepted, limited(job.message, kJobMessageMax), job.folder, job.result.document,
+               job.tries, more...);
 }
 
 /// Reads columns as in `kColumns`.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adapters/system/files/file_lock.hpp"
+#include "core/text/limited.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/open_site.hpp"
 #include "daemon/gateway/upkeep/import_csv.hpp"
@@ -17,7 +18,7 @@ constexpr std::size_t kRefusedShown = 10;
 
 std::string author() {
   const char* user = std::getenv("USER");
-  return user != nullptr && *user != '\0' ? user : "unknown";
+  return user != nullptr && *user != '\0' ? limited(user, kAuthorMax) : "unknown";
 }
 
 void print_issues(const ImportArguments& arguments, const csv::ReadingsReport& report,
@@ -69,6 +70,10 @@ int run_import(const ImportArguments& arguments, const Console& console) {
     return console.misused(
         "--reason is empty; say why these readings are imported, so that others can understand it "
         "later");
+  }
+  if (arguments.reason.size() > kReasonMax) {
+    return console.misused(fmt::format("--reason is {} bytes long; it may be {} at most",
+                                       arguments.reason.size(), kReasonMax));
   }
   const auto site = open_site(arguments.site);
   if (!site) return console.fail(site.error());

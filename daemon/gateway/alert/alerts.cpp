@@ -8,6 +8,7 @@
 
 #include "adapters/http/url.hpp"
 #include "adapters/system/files/sha256.hpp"
+#include "core/text/limited.hpp"
 #include "daemon/gateway/ingest/plausible_time.hpp"
 
 namespace recald::daemon {
@@ -16,6 +17,8 @@ namespace {
 using metering::Instant;
 using std::chrono::milliseconds;
 
+constexpr int kRefusedMax = 50;          // one after the other, before it is tried later
+constexpr std::size_t kTextShown = 200;  // of an alert that was refused
 constexpr std::size_t kRecentMax = 1'000;
 constexpr std::size_t kNotifiedMax = 1'000;
 /// How much of the past a new destination receives. The recovery of a store at the start is in it.
@@ -89,7 +92,8 @@ void Alerts::set_site(std::shared_ptr<const SiteConfig> site) {
     const auto known = std::ranges::find(outgoing_, cursor, &Outgoing::cursor);
     outgoing.push_back({.destination = destination,
                         .cursor = cursor,
-                        .position = known == outgoing_.end() ? std::nullopt : known->position});
+                        .position = known == outgoing_.end() ? std::nullopt : known->position,
+                        .events_max = rules_.events});
   }
   outgoing_ = std::move(outgoing);
   poll_after(rules_.gather);
@@ -115,7 +119,15 @@ void Alerts::poll() {
     if (now.monotonic < outgoing.not_before) continue;
     auto pending = pending_for(outgoing, now);
     if (!pending) continue;  // the store cannot be read, which it says itself
-    if (pending->events.empty()) {
+    std::erase_if(pending->events, [&](const StoreEvent& event) {
+      return std::ranges::any_of(outgoing.refused, [&](const StoreEvent& refused) {
+        return refused.kind == event.kind && refused.subject == event.subject &&
+               refused.time == event.time;
+      });
+    });
+    if (pending->events.empty() && !outgoing.refused.empty()) {
+      finish_failed(outgoing, *pending, {ErrorCode::io_failed, outgoing.refusal});
+    } else if (pending->events.empty()) {
       move(outgoing, pending->position);
     } else if (!waits_for_morning(*pending, now.instant())) {
       return send(outgoing, std::move(*pending), now.instant());
@@ -219,8 +231,8 @@ void Alerts::move(Outgoing& outgoing, std::optional<std::int64_t> position) {
 }
 
 void Alerts::send(const Outgoing& outgoing, Pending pending, Instant now) {
-  if (std::ssize(pending.events) > rules_.events) {  // the others are the next message
-    pending.events.resize(static_cast<std::size_t>(rules_.events));
+  if (std::ssize(pending.events) > outgoing.events_max) {  // the others are the next message
+    pending.events.resize(static_cast<std::size_t>(outgoing.events_max));
     // One that the store does not have yet has no number, and comes after those that it has.
     const auto last = std::ranges::max_element(pending.events, {}, &StoreEvent::number);
     pending.position = last->number > 0 ? std::optional{last->number} : std::nullopt;
@@ -239,32 +251,49 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
   is_sending_ = false;
   const auto outgoing = std::ranges::find(outgoing_, cursor, &Outgoing::cursor);
   if (outgoing == outgoing_.end()) return poll_after(milliseconds{0});  // removed by a reload
+  if (sent) {
+    finish_sent(*outgoing, pending);
+  } else {
+    finish_failed(*outgoing, pending, sent.error());
+  }
+  poll_after(milliseconds{0});
+}
+
+void Alerts::finish_failed(Outgoing& outgoing, const Pending& pending, const Error& why) {
+  if (why.code == ErrorCode::out_of_range) {
+    if (pending.events.size() > 1) {
+      outgoing.events_max = static_cast<int>(pending.events.size()) / 2;
+    } else {
+      outgoing.refused.push_back(pending.events.front());
+      outgoing.refusal = why.message;
+    }
+    // What comes after it may be taken; a destination that takes nothing at all is tried later.
+    if (std::ssize(outgoing.refused) <= kRefusedMax) return;
+  }
+  outgoing.refused.clear();
   const Moment now = ports_.loop.now();
-  const std::string words = destination_words(outgoing->destination);
-  if (!sent) {
-    const bool is_first = outgoing->wait == milliseconds{0};
-    outgoing->wait = is_first ? rules_.retry_min : std::min(2 * outgoing->wait, rules_.retry_max);
-    outgoing->not_before = now.monotonic + outgoing->wait;
-    if (is_first) {
-      notify_(
-          {.time = now.instant(),
+  const bool is_first = outgoing.wait == milliseconds{0};
+  outgoing.wait = is_first ? rules_.retry_min : std::min(2 * outgoing.wait, rules_.retry_max);
+  outgoing.not_before = now.monotonic + outgoing.wait;
+  if (!is_first) return;
+  const std::string words = destination_words(outgoing.destination);
+  notify_({.time = now.instant(),
            .severity = Severity::warning,
            .kind = "alert_not_sent",
            .subject = words,
            .text = fmt::format("no alert can be sent as {}: {}; recald keeps trying for three days",
-                               words, sent.error().message),
+                               words, why.message),
            .is_counted = true});
-    }
-    return poll_after(milliseconds{0});
-  }
-  outgoing->wait = outgoing->not_before = milliseconds{0};
-  auto& notified = notified_[cursor];
-  for (const StoreEvent& event : pending.events) {
-    notified.push_back({event.time, event.kind, event.subject});
-  }
-  keep_newest(notified, kNotifiedMax);
-  move(*outgoing, pending.position);
-  notify_({.time = now.instant(),
+}
+
+void Alerts::finish_sent(Outgoing& outgoing, const Pending& pending) {
+  outgoing.wait = outgoing.not_before = milliseconds{0};
+  outgoing.events_max = std::min(2 * outgoing.events_max, rules_.events);
+  set_aside_refused(outgoing);
+  remember(outgoing, pending.events);
+  move(outgoing, pending.position);
+  const std::string words = destination_words(outgoing.destination);
+  notify_({.time = ports_.loop.now().instant(),
            .severity = Severity::info,
            .kind = "alert_sent",
            .subject = words,
@@ -274,7 +303,31 @@ void Alerts::finish(const std::string& cursor, const Pending& pending, const Res
                                    : fmt::format("{} alerts were", pending.events.size()),
                                words),
            .is_counted = true});
-  poll_after(milliseconds{0});
+}
+
+void Alerts::set_aside_refused(Outgoing& outgoing) {
+  const std::vector<StoreEvent> refused = std::exchange(outgoing.refused, {});
+  if (refused.empty()) return;
+  remember(outgoing, refused);
+  const std::string words = destination_words(outgoing.destination);
+  notify_(
+      {.time = ports_.loop.now().instant(),
+       .severity = Severity::warning,
+       .kind = "alert_refused",
+       .subject = words,
+       .text = fmt::format(
+           "{} refuses {} and takes others; {} not sent again: {}", words,
+           refused.size() == 1 ? "an alert" : fmt::format("{} alerts", refused.size()),
+           refused.size() == 1 ? "it is" : "they are", limited(refused.front().text, kTextShown)),
+       .is_counted = true});
+}
+
+void Alerts::remember(const Outgoing& outgoing, const std::vector<StoreEvent>& events) {
+  auto& notified = notified_[outgoing.cursor];
+  for (const StoreEvent& event : events) {
+    notified.push_back({event.time, event.kind, event.subject});
+  }
+  keep_newest(notified, kNotifiedMax);
 }
 
 }  // namespace recald::daemon

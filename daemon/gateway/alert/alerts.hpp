@@ -89,6 +89,10 @@ class Alerts {
     std::optional<std::int64_t> position;     ///< Ahead of the store's if that refuses the write.
     std::chrono::milliseconds not_before{0};  ///< By the monotonic clock.
     std::chrono::milliseconds wait{0};        ///< Before the next try; 0: the last one succeeded.
+    int events_max = 0;                       ///< In the next message; halves where it is refused.
+    /// Refused alone. If it then takes another message, it was for what is in them.
+    std::vector<StoreEvent> refused = {};
+    std::string refusal = {};  ///< Why, of the last one.
   };
   /// What a destination has still to receive.
   struct Pending {
@@ -108,6 +112,10 @@ class Alerts {
   void move(Outgoing& outgoing, std::optional<std::int64_t> position);
   void send(const Outgoing& outgoing, Pending pending, metering::Instant now);
   void finish(const std::string& cursor, const Pending& pending, const Result<void>& sent);
+  void finish_failed(Outgoing& outgoing, const Pending& pending, const Error& why);
+  void finish_sent(Outgoing& outgoing, const Pending& pending);
+  void set_aside_refused(Outgoing& outgoing);
+  void remember(const Outgoing& outgoing, const std::vector<StoreEvent>& events);
 
   Ports ports_;
   std::shared_ptr<const SiteConfig> site_;

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/limited.hpp"
+
 namespace recald::daemon {
 namespace {
 
@@ -29,8 +31,22 @@ void move_front(std::vector<T>& from, std::vector<T>& to, std::size_t& left) {
   from.erase(from.begin(), end);
 }
 
-std::string without_documents(RecordBatch& batch) {
-  for (StoredJob& job : batch.results) job.result.document.clear();
+/// What one event or result says, at its shortest: that there was one is told all the same, since
+/// the record counts them.
+constexpr std::size_t kShortText = 80;
+
+/// Without documents and with the beginnings of texts.
+std::string shortened(RecordBatch& batch) {
+  for (StoredJob& job : batch.results) {
+    job.result.document.clear();
+    job.message = limited(job.message, kShortText);
+    job.asked_by = limited(job.asked_by, kShortText);
+  }
+  for (StoreEvent& event : batch.events) {
+    event.kind = limited(event.kind, kShortText);
+    event.subject = limited(event.subject, kShortText);
+    event.text = limited(event.text, kShortText);
+  }
   return record::to_json(batch);
 }
 
@@ -77,7 +93,7 @@ class RecordSink final : public Sink {
     if (payload.size() > rules_.payload_bytes && count_in(batch) > 1) {
       return send_in_halves(std::move(batch), stop);
     }
-    if (payload.size() > rules_.result_bytes) payload = without_documents(batch);
+    if (payload.size() > rules_.result_bytes) payload = shortened(batch);
     const auto until = steady_clock::now() + rules_.confirm_max;
     for (int times = 1;; ++times) {
       const int calls = link_->calls();
@@ -85,7 +101,7 @@ class RecordSink final : public Sink {
       if (!published && published.error().code == ErrorCode::out_of_range) {
         // The broker takes less than we do.
         if (count_in(batch) > 1) return send_in_halves(std::move(batch), stop);
-        payload = without_documents(batch);
+        payload = shortened(batch);
         published = link_->publish(payload, rules_.publish_max, stop);
       }
       if (!published) return waits(published.error().message);

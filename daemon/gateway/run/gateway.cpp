@@ -23,8 +23,7 @@ constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll 
 constexpr hours kMonthsEvery{1};
 constexpr hours kRefusedReadingsEvery{1};
 constexpr std::chrono::minutes kMetersEvery{1};
-constexpr int kEventsTakenOver = 10'000;
-constexpr int kEventsLookedAt = 10'000;
+constexpr std::size_t kEventsTakenOver = 10'000;
 constexpr std::size_t kSamplesAtATime = 500;  // taken over between two checks of the store
 constexpr std::size_t kMonthsAtATime = 12;    // of one meter, in one step of the loop
 
@@ -43,15 +42,6 @@ CommitRules rules_for(const SiteConfig& site) {
   }
   rules.intervals_max = std::max(rules.intervals_max, intervals_a_day);
   return rules;
-}
-
-/// @param events  Newest first.
-bool was_reported_silent(const std::vector<StoreEvent>& events, const std::string& meter) {
-  const auto last = std::ranges::find_if(events, [&](const StoreEvent& event) {
-    return event.subject == meter &&
-           (event.kind == "meter_silent" || event.kind == "meter_answers");
-  });
-  return last != events.end() && last->kind == "meter_silent";
 }
 
 }  // namespace
@@ -128,8 +118,8 @@ void Gateway::gather_feeds() {
 }
 
 void Gateway::watch_meters_of(const SiteConfig& site) {
-  // What an earlier process reported, newest first; a store that cannot be read says so itself.
-  const auto events = ports_.store.events(kEventsLookedAt);
+  // What an earlier process reported; a store that cannot be read says so itself.
+  const auto silent = ports_.store.silent_meters();
   std::map<std::string, MeterWatch> watches;
   for (const MeterConfig& config : site.meters) {
     if (!config.is_stored()) continue;
@@ -144,8 +134,7 @@ void Gateway::watch_meters_of(const SiteConfig& site) {
     const auto pushed = std::ranges::find(pushed_, id, [](const auto& one) { return one->id(); });
     const auto known_until =
         pushed == pushed_.end() ? std::nullopt : (*pushed)->progress().front().known_until();
-    watches.emplace(
-        id, MeterWatch{id, silence_max, known_until, events && was_reported_silent(*events, id)});
+    watches.emplace(id, MeterWatch{id, silence_max, known_until, silent && silent->contains(id)});
   }
   meter_watches_ = std::move(watches);
 }
@@ -168,7 +157,11 @@ Result<void> Gateway::take_over(Store& memory, const std::function<void()>& on_p
 }
 
 Result<void> Gateway::take_over_all(Store& memory, const std::function<void()>& on_progress) {
-  auto events = TRY(memory.events(kEventsTakenOver));
+  std::vector<StoreEvent> events;
+  TRY(memory.for_each_event(Instant::max(), [&](const StoreEvent& event) {
+    events.push_back(event);
+    return events.size() < kEventsTakenOver;
+  }));
   std::ranges::reverse(events);
   committer_.add({.events = std::move(events)});
   for (MeterProgress* const progress : all_progress()) {

@@ -410,6 +410,58 @@ TEST_F(StoreFile, EventsComeNewestFirst) {
   EXPECT_THAT(*store_->events(1), SizeIs(1));
 }
 
+// A program sends a megabyte as a reason, five hundred times.
+TEST_F(StoreFile, AnEventIsStoredAtALimitedLength) {
+  const std::string megabyte(1'000'000, 'x');
+  StoreBatch batch;
+  batch.events.push_back({kStart, Severity::info, "corrected", "main", megabyte});
+  batch.events.push_back({kStart, Severity::info, megabyte, megabyte, "short"});
+  (void)commit(batch);
+  const auto events = store_->events(10).value();
+  ASSERT_THAT(events, SizeIs(2));
+  EXPECT_EQ(events[1].text.size(), kEventTextMax);
+  EXPECT_THAT(events[1].text, ::testing::EndsWith("(1000000 bytes in all)"));
+  EXPECT_EQ(events[0].kind.size(), kEventWordMax);
+  EXPECT_EQ(events[0].subject.size(), kEventWordMax);
+  auto longest = store_->database().prepare("SELECT max(length(text)) FROM event").value();
+  ASSERT_TRUE(longest.step().value());
+  EXPECT_LE(longest.integer(0), std::int64_t{kEventTextMax});
+}
+
+// Of an earlier recald, which kept them whole: a quarter of a gigabyte is never in memory at once.
+TEST_F(StoreFile, LongEventsOfBeforeAreReadShortAndAFewAtATime) {
+  ASSERT_TRUE(store_->database()
+                  .execute("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE "
+                           "i < 500) INSERT INTO event SELECT i, i, 0, CASE i % 2 WHEN 0 THEN "
+                           "'meter_silent' ELSE 'meter_answers' END, 'm' || (i % 7), "
+                           "printf('%.*c', 500000, 'x'), 1, NULL, NULL FROM n")
+                  .has_value());
+  const auto newest = store_->events(10'000).value();
+  EXPECT_EQ(newest.front().number, 500);
+  EXPECT_LT(newest.size(), 500U);  // a megabyte of them
+  EXPECT_GT(newest.size(), 200U);
+  EXPECT_THAT(newest.front().text, ::testing::EndsWith("(500000 bytes in all)"));
+  std::int64_t next = 501;
+  ASSERT_TRUE(store_
+                  ->for_each_event(Instant::max(),
+                                   [&](const StoreEvent& event) {
+                                     EXPECT_EQ(event.number, --next);
+                                     return event.number > 3;
+                                   })
+                  .has_value());
+  EXPECT_EQ(next, 3);
+  std::int64_t after = 0;
+  while (after < 500) {
+    const auto some = store_->events_after(after, 100'000).value();
+    ASSERT_FALSE(some.empty());
+    EXPECT_EQ(some.front().number, after + 1);
+    after = some.back().number;
+  }
+  // 500 is m3 and silent, 499 m2 and answers, 498 m1 and silent, …
+  EXPECT_THAT(store_->silent_meters().value(),
+              ::testing::UnorderedElementsAre("m3", "m1", "m6", "m4"));
+}
+
 TEST_F(StoreFile, AReaderSeesWhatIsCommittedAndCannotWrite) {
   const std::uint32_t main = meter("main");
   auto reader = Database::open(file(), {.access = Database::Access::read_only});

@@ -13,9 +13,19 @@ TEST(Printable, WritesControlCharactersOut) {
   EXPECT_EQ(printable(std::string_view{"\0", 1}), "\\x00");
 }
 
+TEST(Printable, WritesOutWhatIsNotSeenBeyondAscii) {
+  EXPECT_EQ(printable("a\u202Eb\u2066c\u2069"), "a\\u202Eb\\u2066c\\u2069");
+  EXPECT_EQ(printable("\u0085\u009B31m\u2028"), "\\u0085\\u009B31m\\u2028");
+  EXPECT_EQ(printable("\xE2\x80"), "\xE2\x80");  // cut within a character
+}
+
+TEST(Printable, KeepsTheLinesOfATextThatHasSome) {
+  EXPECT_EQ(printable("one\n\ttwo\x1B", "\n\t"), "one\n\ttwo\\x1B");
+}
+
 TEST(Printable, LeavesEverythingElse) {
   EXPECT_EQ(printable(""), "");
-  EXPECT_EQ(printable("São Paulo, 21.5 °C ~"), "São Paulo, 21.5 °C ~");
+  EXPECT_EQ(printable("São Paulo – 21.5 °C … 東京 ✖ 🏢 ~"), "São Paulo – 21.5 °C … 東京 ✖ 🏢 ~");
 }
 
 TEST(Printable, IsWhatEveryErrorSays) {

@@ -49,23 +49,27 @@ http::Response get_events(const Served& served, const http::Request& request) {
   if (!limit) return limit.error();
   const auto cursor = cursor_of(request);
   if (!cursor) return cursor.error();
-  const auto newest = served.store.events(kLimitMax);
-  if (!newest) return refusal(newest.error()).value();
 
   Json events = Json::array();
+  Json next;
+  std::size_t bytes = 0;
   EventCursor at;  // how many events of which second were passed
-  for (const StoreEvent& event : *newest) {
-    at = event.time == at.time ? EventCursor{at.time, at.sent + 1} : EventCursor{event.time, 1};
-    const bool was_sent =
-        event.time > cursor->time || (event.time == cursor->time && at.sent <= cursor->sent);
-    if (was_sent || !span->contains(event.time)) continue;
-    if (std::ssize(events) == *limit) {
-      const std::string next = metering::to_string(event.time) + "/" + std::to_string(at.sent - 1);
-      return json_answer({{"events", events}, {"next", next}});
-    }
-    events.push_back(event_json(event));
-  }
-  return json_answer({{"events", events}, {"next", nullptr}});
+  const auto read =
+      served.store.for_each_event(std::min(cursor->time, span->end), [&](const StoreEvent& event) {
+        at = event.time == at.time ? EventCursor{at.time, at.sent + 1} : EventCursor{event.time, 1};
+        if (event.time < span->begin) return false;
+        const bool was_sent = event.time == cursor->time && at.sent <= cursor->sent;
+        if (was_sent || !span->contains(event.time)) return true;
+        if (std::ssize(events) == *limit || bytes > kEventsBytesMax) {
+          next = metering::to_string(event.time) + "/" + std::to_string(at.sent - 1);
+          return false;
+        }
+        bytes += event.text.size();
+        events.push_back(event_json(event));
+        return true;
+      });
+  if (!read) return refusal(read.error()).value();
+  return json_answer({{"events", events}, {"next", next}});
 }
 
 }  // namespace recald::daemon

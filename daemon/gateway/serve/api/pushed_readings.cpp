@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adapters/csv/fields.hpp"
+#include "adapters/ports/interval_store.hpp"
 #include "adapters/system/files/sha256.hpp"
 #include "core/absent.hpp"
 #include "core/metering/months/validation.hpp"
@@ -95,6 +96,13 @@ Checked<std::optional<Correction>> correction_in(const nlohmann::json& body,
   }
   if (body.contains("author") && !is_text("author")) {
     return refusal(400, "invalid_value", "'author' is empty; say who corrects them", "author");
+  }
+  for (const auto& [key, bytes_max] : {std::pair{"reason", kReasonMax}, {"author", kAuthorMax}}) {
+    const std::size_t size = text_in(body, key).value_or("").size();
+    if (size <= bytes_max) continue;
+    return refusal(400, "invalid_value",
+                   fmt::format("'{}' is {} bytes long; it may be {} at most", key, size, bytes_max),
+                   key);
   }
   system::Sha256 hash;
   hash.add(bytes);

@@ -12,6 +12,7 @@
 namespace recald::daemon {
 namespace {
 
+using metering::Instant;
 using views::Html;
 using views::Table;
 
@@ -71,27 +72,28 @@ http::Response events_page(const Served& served, const http::Request& request) {
   Html html;
   html.element("h1", "Events");
   write_filter(html, served, filter);
-  const auto events = served.store.events(kLimitMax);
-  if (!events) {
-    html.element("p", "✖ The events cannot be read: " + events.error().message, "bad");
-    return page_of(served, PageKind::events, "Events", html);
-  }
   Table table{"The newest first"};
   table.with_labels().columns({"When", "Severity", "About", "What", "Times"});
   int shown = 0;
   int found = 0;
-  for (const StoreEvent& event : *events) {
-    if (!filter.takes(event)) continue;
-    if (++found > kPageEvents) continue;
+  int seen = 0;
+  const auto read = served.store.for_each_event(Instant::max(), [&](const StoreEvent& event) {
+    ++seen;
+    if (!filter.takes(event) || ++found > kPageEvents) return seen < kLimitMax;
     ++shown;
     table.row({{site_time_text(served.calendar, event.last.value_or(event.time))},
                severity_cell(event.severity),
                {event.subject.empty() ? "the site" : event.subject},
                {event.text},
                {std::to_string(event.count), "number"}});
+    return seen < kLimitMax;
+  });
+  if (!read) {
+    html.element("p", "✖ The events cannot be read: " + read.error().message, "bad");
+    return page_of(served, PageKind::events, "Events", html);
   }
   if (shown == 0) {
-    html.element("p", events->empty() ? "No events yet." : "No event is like that.", "muted");
+    html.element("p", seen == 0 ? "No events yet." : "No event is like that.", "muted");
   } else {
     table.write(html);
   }

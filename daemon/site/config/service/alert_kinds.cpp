@@ -16,6 +16,7 @@ constexpr std::array kKinds{
     AlertKind{"counter_state_lost", "A counter had to begin anew", true},
     AlertKind{"unforeseen", "Something unforeseen happened", true},
     AlertKind{"alert_not_sent", "An alert could not be sent", false},
+    AlertKind{"alert_refused", "An alert was refused", false},
     AlertKind{"forward_failed", "Results cannot be sent on", false},
     AlertKind{"forward_refused", "Some results are refused where they are sent", false},
     AlertKind{"forward_anew", "Everything is sent to the fleet again", false},

@@ -71,6 +71,9 @@ class AlertsTest : public ::testing::Test {
     ++tries_;
     const bool is_mail = std::holds_alternative<MailConfig>(to);
     if (is_mail && mail_fails_) return failure(ErrorCode::io_failed, "connection refused");
+    const bool is_refused =
+        is_mail && !refused_.empty() && message.text.find(refused_) != std::string::npos;
+    if (is_refused) return failure(ErrorCode::out_of_range, "552 too long");
     auto& box = is_mail ? mails_ : hooks_;
     box.push_back(message);
     return {};
@@ -105,6 +108,7 @@ class AlertsTest : public ::testing::Test {
   std::vector<AlertMessage> mails_;
   std::vector<AlertMessage> hooks_;
   bool mail_fails_ = false;
+  std::string refused_;  ///< What a mail must not contain.
   int tries_ = 0;
 };
 
@@ -164,6 +168,60 @@ TEST_F(AlertsTest, AServerThatIsDownIsTriedAgainAndHoldsUpNobody) {
   loop_.run_for(hours{1});
   EXPECT_THAT(mails_, SizeIs(1));
   EXPECT_THAT(hooks_, SizeIs(1));
+}
+
+// An alert that a server will never take must not hold up those behind it.
+TEST_F(AlertsTest, WhatAServerRefusesIsSetAsideAndTheOthersArrive) {
+  begin(kMail);
+  refused_ = "Bad";
+  for (int i = 0; i < 9; ++i) {
+    note({.time = {},
+          .severity = Severity::warning,
+          .kind = "meter_silent",
+          .subject = fmt::format("m{}", i),
+          .text = fmt::format("{} {}", i == 2 || i == 5 ? "bad" : "good", i)});
+  }
+  loop_.run_for(minutes{3});
+  std::string sent;
+  for (const AlertMessage& mail : mails_) sent += mail.text;
+  for (const int i : {0, 1, 3, 4, 6, 7, 8}) {
+    EXPECT_THAT(sent, HasSubstr(fmt::format("Good {}", i)));
+  }
+  std::vector<std::string> said;
+  const auto events = store_.events(100).value();
+  for (const StoreEvent& event : events) {
+    if (event.kind == "alert_refused" || event.kind == "alert_not_sent") said.push_back(event.text);
+  }
+  ASSERT_THAT(said, SizeIs(1));  // of one day: counted, with the last sentence
+  EXPECT_THAT(said[0], HasSubstr("mail to ada@example.org refuses an alert and takes others; it is "
+                                 "not sent again: bad 5"));
+  const int tries = tries_;
+  begin(kMail);  // another process
+  loop_.run_for(hours{1});
+  EXPECT_EQ(tries_, tries);
+}
+
+// It is the server, not the alerts: nothing is lost while it refuses everything.
+TEST_F(AlertsTest, AServerThatRefusesEverythingGetsItLater) {
+  begin(kMail);
+  refused_ = "Times are in";
+  for (int i = 0; i < 3; ++i) {
+    happens("meter_silent", Severity::warning, fmt::format("m{}", i));
+  }
+  loop_.run_for(hours{5});
+  EXPECT_THAT(mails_, IsEmpty());
+  EXPECT_LT(tries_, 14 * 6);
+  refused_.clear();
+  loop_.run_for(hours{2});
+  std::string sent;
+  for (const AlertMessage& mail : mails_) sent += mail.document;
+  for (const char* meter : {"m0", "m1", "m2"}) EXPECT_THAT(sent, HasSubstr(meter));
+  int refusals = 0;
+  const auto events = store_.events(100).value();
+  for (const StoreEvent& event : events) {
+    refusals += event.kind == "alert_refused" ? 1 : 0;
+  }
+  EXPECT_EQ(refusals, 0);
 }
 
 // The mail of an event that is three days old helps nobody.

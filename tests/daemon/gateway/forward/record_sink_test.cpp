@@ -255,6 +255,39 @@ TEST_F(RecordSinkTest, ABrokerThatIsKilledAndWipedLosesNothing) {
   EXPECT_EQ(forwarder_->status().waiting, 0);
 }
 
+class RecordSinkOfASmallBroker : public RecordSinkTest {
+ protected:
+  RecordSinkOfASmallBroker() : RecordSinkTest{{.more = "max_packet_size 1500\n"}} {}
+};
+
+// A sentence of every length, and documents: what comes after them must not wait for ever.
+TEST_F(RecordSinkOfASmallBroker, AnEventThatIsTooLongForItArrivesShortened) {
+  PlayedRecord record{broker_.port()};
+  begin(kHasty);
+  loop_.run_for(seconds{10});
+  std::vector<std::size_t> lengths{1'200, 1'400, 3'999, 200'000};
+  for (const std::size_t length : lengths) {
+    const StoreEvent event{kNoon, Severity::info, std::string(length / 4, 'k'),
+                           std::string(length / 4, 's'), std::string(length, 't')};
+    ASSERT_TRUE(store_.commit({.events = {event}}).has_value());
+    finish_job(std::string(length, '9'));
+  }
+  happens("after");
+  store(0, 300);
+  loop_.run_for(minutes{5});
+  EXPECT_EQ(forwarder_->status().waiting, 0) << forwarder_->status().why;
+  EXPECT_THAT(record.means_of("depot"), ElementsAreArray(numbers(0, 300)));
+  std::map<std::int64_t, std::string> kinds;
+  std::set<std::int64_t> results;
+  for (const record::RecordBatch& batch : batches_of(record.payloads())) {
+    for (const StoreEvent& event : batch.events) kinds[event.number] = event.kind;
+    for (const StoredJob& job : batch.results) results.insert(job.number);
+  }
+  EXPECT_THAT(kinds, SizeIs(lengths.size() + 1));
+  EXPECT_EQ(kinds.rbegin()->second, "after");
+  EXPECT_THAT(results, SizeIs(lengths.size()));
+}
+
 // The broker has kept the record's last word, which a gateway finds after its start.
 TEST_F(RecordSinkTest, WhatIsConfirmedWhileTheGatewayIsAwayIsNotSentAgain) {
   PlayedRecord record{broker_.port(), Mood::mute};

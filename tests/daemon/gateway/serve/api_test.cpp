@@ -160,6 +160,20 @@ TEST_F(Api, PagesOfEventsStandStillWhileNewOnesCome) {
   EXPECT_EQ(second["events"][0]["kind"], "b");
   EXPECT_EQ(second["events"][1]["kind"], "a");
   EXPECT_EQ(second["next"], nullptr);
+  // All of them in pages, each once, of whatever size.
+  for (const char* limit : {"1", "2", "3"}) {
+    std::string kinds;
+    Json next = "";
+    while (!next.is_null()) {
+      std::map<std::string, std::string> asked{{"limit", limit}};
+      if (next != "") asked["cursor"] = next;
+      const Json page = get_json("/api/v1/events", asked);
+      for (const Json& event : page["events"]) kinds += event["kind"];
+      next = page["next"];
+    }
+    EXPECT_EQ(kinds, "edcba") << limit;
+  }
+
   const Json minute = get_json("/api/v1/events",
                                {{"from", "2024-03-30T12:01:00Z"}, {"to", "2024-03-30T12:02:00Z"}});
   EXPECT_THAT(minute["events"], SizeIs(3));

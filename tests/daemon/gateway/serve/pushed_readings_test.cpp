@@ -174,6 +174,23 @@ TEST_F(PushedMeterSite, AReasonPutsAStoredValueRightAsAnEdit) {
   EXPECT_THAT(events[0]["text"].get<std::string>(), HasSubstr("Ada: wrong channel"));
 }
 
+TEST_F(PushedMeterSite, WhatIsSaidOfACorrectionHasALength) {
+  const auto correct = [&](std::size_t reason, std::size_t author) {
+    return post(
+        fmt::format(R"({{"meter":"chw","unit":"kW","reason":"{}","author":"{}","readings":[)"
+                    R"({{"time":"2024-03-30T10:00:00Z","value":7}}]}})",
+                    std::string(reason, 'r'), std::string(author, 'a')));
+  };
+  EXPECT_EQ(correct(2'000, 200).status, 200);
+  for (const auto& [reason, author, field] :
+       {std::tuple{2'001, 200, "reason"}, {1'000'000, 1, "reason"}, {1, 201, "author"}}) {
+    const http::Response refused = correct(static_cast<std::size_t>(reason), author);
+    EXPECT_EQ(refused.status, 400);
+    EXPECT_THAT(refused.body, HasSubstr(fmt::format("'{}' is", field)));
+    EXPECT_LT(refused.body.size(), 200U);
+  }
+}
+
 TEST_F(PushedMeterSite, ACorrectionThatChangesNothingLeavesNoEdit) {
   const std::string body =
       R"({"meter":"chw","unit":"kW","reason":"again","readings":[{"time":"2024-03-30T10:00:00Z","value":7}]})";
