@@ -31,7 +31,7 @@ std::string time_left_text(double elapsed_s, double share) {
 }
 
 ProgressLine::~ProgressLine() {
-  if (shown_percent_ >= 0) console_.err << "\r\033[K" << std::flush;
+  if (shown_percent_ >= 0) console_.err << kLineOver << std::flush;
 }
 
 void ProgressLine::show(const calibration::Progress& progress) {

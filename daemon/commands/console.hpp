@@ -14,6 +14,9 @@
 
 namespace recald::daemon {
 
+/// Begins the present line of a terminal again.
+inline constexpr std::string_view kLineOver = "\r\033[K";
+
 inline constexpr int kSuccess = 0;
 inline constexpr int kFailure = 1;  ///< Explained in one line.
 inline constexpr int kUsage = 2;

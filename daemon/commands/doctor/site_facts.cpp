@@ -246,6 +246,12 @@ Facts secrets(const SiteConfig& site) {
   if (site.http && !site.http->token_file.empty()) {
     facts.push_back(secret("[http] token_file", http::read_token_file(site.http->token_file)));
   }
+  if (site.http) {
+    for (const TokenConfig& one : site.http->tokens) {
+      facts.push_back(secret(fmt::format("[http] token {}", one.file.filename().string()),
+                             http::read_token_file(one.file)));
+    }
+  }
   if (site.http && !site.http->certificate_file.empty()) {
     facts.push_back(certificate(site.http->certificate_file));
     facts.push_back(key_file(site.http->key_file));

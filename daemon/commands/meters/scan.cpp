@@ -75,7 +75,7 @@ class ScanProgress {
  public:
   ScanProgress(const Console& console, const UnitRange& units) : console_(console), units_(units) {}
   ~ScanProgress() {
-    if (console_.is_terminal) console_.err << "\r\033[K" << std::flush;
+    if (console_.is_terminal) console_.err << kLineOver << std::flush;
   }
   ScanProgress(const ScanProgress&) = delete;
   ScanProgress& operator=(const ScanProgress&) = delete;

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/text/printable.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/interrupt.hpp"
 #include "daemon/fleet/config/fleet_config.hpp"
@@ -55,7 +56,7 @@ int run_worker(const WorkerArguments& arguments, const Console& console) {
   }
   if (console.detail == Console::Detail::little) spdlog::set_level(spdlog::level::warn);
   const InterruptGuard guard;
-  const Report report = [](const std::string& words) { spdlog::info("{}", words); };
+  const Report report = [](const std::string& words) { spdlog::info("{}", printable(words)); };
   std::jthread ingester;
   if (config->broker) {
     ingester = std::jthread{[&](const std::stop_token& stop) {

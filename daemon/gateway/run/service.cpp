@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <malloc.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <array>
@@ -35,6 +34,7 @@
 #include "daemon/gateway/run/gateway.hpp"
 #include "daemon/gateway/run/job_runner.hpp"
 #include "daemon/gateway/run/load_watch.hpp"
+#include "daemon/gateway/run/log.hpp"
 #include "daemon/gateway/run/recalibration.hpp"
 #include "daemon/gateway/run/run_guarded.hpp"
 #include "daemon/gateway/run/running_store.hpp"
@@ -346,17 +346,14 @@ class Service {
     if (!config)
       return failure(ErrorCode::malformed, fmt::format("{}", fmt::join(config.error(), "; ")));
     if (auto possible = can_reload(site_.config, *config); !possible) return possible;
-    std::string token;
-    if (config->http && !config->http->token_file.empty()) {
-      token = TRY(http::read_token_file(config->http->token_file));
-    }
+    auto tokens = TRY(read_tokens(config->http.value_or(HttpConfig{})));
     Result<http::Tls> tls;
     if (server_ && !config->http->certificate_file.empty()) {
       tls = http::read_tls({config->http->certificate_file, config->http->key_file});
       if (!tls) return tl::unexpected(tls.error());
     }
     if (auto reloaded = gateway_->reload(*config); !reloaded) return reloaded;
-    if (server_) server_->set_token(std::move(token));
+    if (server_) server_->set_tokens(std::move(tokens));
     if (*tls) server_->set_tls(std::move(*tls));
     upkeep_.set_config(upkeep_of(config->store, running_));
     site_.config = std::move(*config);
@@ -466,8 +463,7 @@ class Service {
 
 Result<void> run_service(OpenSite site, const ServiceOptions& options) {
   save_memory();
-  spdlog::set_default_logger(spdlog::stderr_logger_st("recald"));
-  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
+  open_log();
   auto signals = TRY(Signals::open());
   StoreOpener opener;
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());

@@ -4,6 +4,8 @@
 
 #include <sstream>
 
+#include "daemon/commands/line/terminal_text.hpp"
+
 namespace recald::daemon {
 namespace {
 
@@ -19,6 +21,16 @@ TEST(Console, FailuresAreOneLineEachAndExitWithOne) {
             "recald: no such thing\nrecald: no file\nrecald: one\nrecald: two\n"
             "recald: no such day\n");
   EXPECT_EQ(out.str(), "");
+}
+
+TEST(TerminalText, ShowsWhatOthersWroteAndDrawsItsOwnLines) {
+  std::ostringstream terminal;
+  TerminalText text{*terminal.rdbuf()};
+  std::ostream out{&text};
+  out << "a \x1B]0;title\x07 and \u202Ekcab\n\tb\r" << 'c' << '\x1B' << kLineOver << "d 1 %"
+      << kLineOver << std::flush;
+  EXPECT_EQ(terminal.str(),
+            "a \\x1B]0;title\\x07 and \\u202Ekcab\n\tb\\x0Dc\\x1B\r\033[Kd 1 %\r\033[K");
 }
 
 using Stage = calibration::Progress::Stage;

@@ -271,7 +271,7 @@ TEST_F(WithoutAStore, PushedReadingsAreTakenOnceThereIsOne) {
                              R"(","value":1.5}]})";
     boost::asio::ip::tcp::iostream server{"127.0.0.1",
                                           text.substr(port + 6, text.find('\n', port) - port - 6)};
-    server << "POST /api/v1/readings HTTP/1.1\r\nHost: x\r\nConnection: close\r\n"
+    server << "POST /api/v1/readings HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
               "Content-Type: application/json\r\nContent-Length: "
            << body.size() << "\r\n\r\n"
            << body << std::flush;
@@ -288,6 +288,42 @@ TEST_F(WithoutAStore, PushedReadingsAreTakenOnceThereIsOne) {
   EXPECT_EQ(daemon.end(SIGKILL), -SIGKILL);
   const auto store = stores::open_to_read(folder_ / "site.db").value();
   EXPECT_TRUE(store->interval_extent(store->find_meter("chw")->value())->has_value());
+}
+
+// A sentence that somebody sends must not pass for one of ours.
+TEST_F(RunCommand, WhatOthersWroteIsOneLineOfTheLog) {
+  recald::testing::write_text(folder_ / "site.toml",
+                              recald::testing::read_text(folder_ / "site.toml") +
+                                  "[[meter]]\nid = \"chw\"\nsource = \"http\"\n"
+                                  "utility = \"chilled_water\"\n"
+                                  "[http]\nlisten = \"127.0.0.1:0\"\n");
+  BackgroundProcess daemon{command("run"), said()};
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(said()) && said_so(" port="); }));
+  const std::string text = what_was_said();
+  const std::size_t port = text.rfind(" port=");
+  const auto post = [&](const std::string& value, const std::string& reason) -> std::string {
+    const std::string body = R"({"meter":"chw","unit":"kWh",)" + reason +
+                             R"("readings":[{"time":")" +
+                             metering::to_string(std::chrono::floor<std::chrono::hours>(
+                                 std::chrono::system_clock::now() - std::chrono::hours{2})) +
+                             R"(","value":)" + value + "}]}";
+    boost::asio::ip::tcp::iostream server{"127.0.0.1",
+                                          text.substr(port + 6, text.find('\n', port) - port - 6)};
+    server << "POST /api/v1/readings HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
+              "Content-Type: application/json\r\nContent-Length: "
+           << body.size() << "\r\n\r\n"
+           << body << std::flush;
+    return {std::istreambuf_iterator{server}, {}};
+  };
+  EXPECT_THAT(post("1.5", ""), HasSubstr(" 200 "));
+  EXPECT_THAT(post("2.5", R"("reason":"wrong\n2026-01-01T00:00:00.000Z error event=store_damaged)"
+                          R"( \u001b[31m\u202e\u0000","author":"a\u0007",)"),
+              HasSubstr(" 200 "));
+  EXPECT_EQ(daemon.end(SIGTERM), 0);
+  EXPECT_THAT(what_was_said(),
+              HasSubstr(R"(corrected by a\x07: wrong\x0A2026-01-01T00:00:00.000Z error )"
+                        R"(event=store_damaged \x1B[31m\u202E\x00")"));
+  EXPECT_THAT(what_was_said(), ::testing::Not(HasSubstr("\n2026-01-01")));
 }
 
 // Who starts us waits for a recovery only if it hears that it goes on.
