@@ -19,4 +19,9 @@ namespace recald::http {
 /// - Content-Security-Policy, no sniffing of types, no framing, no shared caches.
 [[nodiscard]] Response dressed(const Request& request, Response response);
 
+/// What the server itself refuses: the handler does not see it, so its headers are added here.
+[[nodiscard]] inline Response refused(int status, std::string_view code, std::string_view message) {
+  return dressed({}, error_response(status, code, message));
+}
+
 }  // namespace recald::http

@@ -5,7 +5,6 @@
 #include <boost/beast/http/error.hpp>
 #include <exception>
 
-#include "adapters/http/credentials.hpp"
 #include "adapters/http/target.hpp"
 
 namespace recald::http {
@@ -30,11 +29,6 @@ Method method_of(beast_http::verb verb) {
   }
 }
 
-/// The handler does not see refusals, so their headers are added here.
-Response refused(int status, std::string_view code, std::string_view message) {
-  return dressed({}, error_response(status, code, message));
-}
-
 template <class Body>
 void set_fields(beast_http::response<Body>& message, const Response& response, bool keep_alive) {
   if (!response.content_type.empty()) {
@@ -48,11 +42,32 @@ beast_http::status status_of(const Response& response) {
   return beast_http::int_to_status(static_cast<unsigned>(response.status));
 }
 
+/// What two programs could read as two different requests is read by neither.
+/// @return or malformed
+Result<void> require_one_meaning(const beast_http::request<beast_http::string_body>& message) {
+  const auto hosts = message.count(beast_http::field::host);
+  if (hosts > 1 || (hosts == 0 && message.version() >= kHttp11)) {
+    return failure(ErrorCode::malformed, hosts == 0 ? "the header Host is missing"
+                                                    : "the header Host was sent more than once");
+  }
+  const auto encodings = message.count(beast_http::field::transfer_encoding);
+  if (encodings == 0) return {};
+  const auto encoding = message[beast_http::field::transfer_encoding];
+  const bool is_chunked =
+      equals_ignoring_case(std::string_view{encoding.data(), encoding.size()}, "chunked");
+  if (encodings > 1 || !is_chunked || message.count(beast_http::field::content_length) > 0) {
+    return failure(ErrorCode::malformed,
+                   "a body is sent with Content-Length, or with Transfer-Encoding: chunked");
+  }
+  return {};
+}
+
 bool has_body(int status) { return status != 304 && status != 204; }
 
 }  // namespace
 
 Result<Request> request_head(const beast_http::request<beast_http::string_body>& message) {
+  TRY(require_one_meaning(message));
   const auto text = message.target();
   auto target = TRY(parse_target({text.data(), text.size()}));
   Request request{.method = method_of(message.method()),
@@ -90,15 +105,7 @@ Response readable_by_origin(const Request& request, const SessionRules& rules, R
 }
 
 std::optional<Response> refusal_of_head(const Request& request, const SessionRules& rules) {
-  if (!rules.token.empty() && !rules.open_paths.contains(request.path) &&
-      !carries_token(request.header("authorization"), rules.token)) {
-    Response response = refused(401, "unauthorized",
-                                "this needs the token of the site's token_file, as the header "
-                                "Authorization: Bearer TOKEN, or in a browser as the password");
-    response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"recald\"");
-    response.headers.emplace_back("WWW-Authenticate", "Basic realm=\"recald\"");
-    return response;
-  }
+  if (auto refusal = refusal_of_access(request, rules.access)) return refusal;
   if (request.method == Method::post) {
     std::string_view type = request.header("content-type");
     if (!equals_ignoring_case(take_element(type, ';'), "application/json")) {
@@ -107,6 +114,11 @@ std::optional<Response> refusal_of_head(const Request& request, const SessionRul
     }
   }
   return {};
+}
+
+bool has_folded_line(std::string_view bytes) {
+  const std::string_view head = bytes.substr(0, bytes.find("\r\n\r\n"));
+  return head.find("\n ") != std::string_view::npos || head.find("\n\t") != std::string_view::npos;
 }
 
 std::optional<Response> refusal_of(const boost::system::error_code& error) {

@@ -13,7 +13,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 
+#include "adapters/http/access.hpp"
 #include "adapters/http/ascii.hpp"
 #include "adapters/http/dress.hpp"
 #include "adapters/http/message.hpp"
@@ -23,8 +25,7 @@ namespace recald::http {
 
 /// The settings that all sessions of a server share.
 struct SessionRules {
-  std::string token;                 ///< Empty: no token is required.
-  std::set<std::string> open_paths;  ///< Answered without the token.
+  AccessRules access;
   std::set<std::string>
       origins;  ///< Whose pages may ask from a browser: "https://bms.example.org".
   std::size_t body_max = 1024 * 1024;
@@ -33,7 +34,8 @@ struct SessionRules {
   bool is_stopping = false;
 };
 
-/// Method, target and headers. @return or malformed, see parse_target.
+/// Method, target and headers. @return or malformed: see parse_target; no or several `Host`; an
+/// encoding that leaves the length of the body open to interpretation (RFC 9112, 6.3).
 [[nodiscard]] Result<Request> request_head(
     const boost::beast::http::request<boost::beast::http::string_body>& message);
 
@@ -51,6 +53,11 @@ struct SessionRules {
 /// a browser send (its body is not declared as JSON).
 [[nodiscard]] std::optional<Response> refusal_of_head(const Request& request,
                                                       const SessionRules& rules);
+
+/// Whether a header's value goes on in the next line (RFC 9112, 5.2), which programs on the way may
+/// read as something else.
+/// @param bytes  From the request's first on.
+[[nodiscard]] bool has_folded_line(std::string_view bytes);
 
 /// The response to a failed read; nothing if the client went away or was too slow.
 [[nodiscard]] std::optional<Response> refusal_of(const boost::system::error_code& error);

@@ -11,6 +11,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <map>
@@ -30,6 +31,8 @@ using boost::beast::tcp_stream;
 using TlsStream = boost::beast::ssl_stream<tcp_stream>;
 
 constexpr std::chrono::milliseconds kAfterAcceptFailed{100};
+/// Who sends or receives is not closed for another client so soon.
+constexpr std::chrono::milliseconds kInPeace{1'000};
 
 /// For a client above the limit of connections.
 Response too_many() {
@@ -48,7 +51,7 @@ Result<tcp::endpoint> endpoint_of(const ServerOptions& options) {
                        "' is no numeric address to listen on; "
                        "127.0.0.1 is this machine alone, 0.0.0.0 all its networks");
   }
-  if (!address.is_loopback() && (options.token.empty() || !options.tls)) {
+  if (!address.is_loopback() && (options.access.tokens.empty() || !options.tls)) {
     return failure(ErrorCode::invalid_value,
                    "to listen on " + options.address +
                        ", which others can reach, a token and TLS are needed: token_file, "
@@ -59,9 +62,6 @@ Result<tcp::endpoint> endpoint_of(const ServerOptions& options) {
 
 }  // namespace
 
-/// Since when a session has waited for a request; absent while it answers one.
-using WaitingSince = std::optional<std::chrono::steady_clock::time_point>;
-
 struct Server::Shared {
   Shared(boost::asio::io_context& context, Handler given)
       : acceptor(context), handler(std::move(given)) {}
@@ -71,7 +71,8 @@ struct Server::Shared {
   tcp::acceptor acceptor;
   Tls tls;  ///< For the next connection.
   Handler handler;
-  std::map<tcp_stream*, const WaitingSince*> open;  ///< Streams of the running sessions.
+  Turns turns;
+  std::map<tcp_stream*, const Waiting*> open;  ///< Streams of the running sessions.
 };
 
 namespace {
@@ -80,9 +81,9 @@ namespace {
 template <class Shared>
 class Known {
  public:
-  Known(std::shared_ptr<Shared> shared, tcp_stream& stream, const WaitingSince& waiting_since)
+  Known(std::shared_ptr<Shared> shared, tcp_stream& stream, const Waiting& waiting)
       : shared_(std::move(shared)), stream_(stream) {
-    shared_->open.emplace(&stream_, &waiting_since);
+    shared_->open.emplace(&stream_, &waiting);
   }
   ~Known() { shared_->open.erase(&stream_); }
   Known(const Known&) = delete;
@@ -96,8 +97,8 @@ class Known {
 template <class Shared>
 awaitable<void> serve_plain(std::shared_ptr<Shared> shared, tcp::socket socket, bool is_welcome) {
   tcp_stream stream{std::move(socket)};
-  Session<tcp_stream> session{stream, shared->rules, shared->handler};
-  const Known<Shared> known{shared, stream, session.waiting_since()};
+  Session<tcp_stream> session{stream, shared->rules, shared->handler, shared->turns};
+  const Known<Shared> known{shared, stream, session.waiting()};
   if (is_welcome) {
     co_await session.run();
   } else {
@@ -110,9 +111,8 @@ template <class Shared>
 awaitable<void> serve_tls(std::shared_ptr<Shared> shared, tcp::socket socket, bool is_welcome) {
   const auto tls = shared->tls;
   TlsStream stream{std::move(socket), *tls};
-  Session<TlsStream> session{stream, shared->rules, shared->handler};
-  const Known<Shared> known{shared, boost::beast::get_lowest_layer(stream),
-                            session.waiting_since()};
+  Session<TlsStream> session{stream, shared->rules, shared->handler, shared->turns};
+  const Known<Shared> known{shared, boost::beast::get_lowest_layer(stream), session.waiting()};
   set_deadline(stream, shared->rules.slow_client);
   boost::system::error_code error;
   co_await stream.async_handshake(boost::asio::ssl::stream_base::server,
@@ -126,15 +126,22 @@ awaitable<void> serve_tls(std::shared_ptr<Shared> shared, tcp::socket socket, bo
   }
 }
 
-/// Closes the connection that has waited longest for a request, so idle clients cannot shut out
-/// others, above all a supervisor's probe. A client that lost its connection reconnects.
-/// @return false when all are being answered.
+/// Closes the connection that has waited longest: first of those that are to leave, then of those
+/// from which a request is awaited, then the others. So clients that send or read slowly, or not at
+/// all, cannot shut out others, above all a supervisor's probe. One that lost its connection
+/// connects again.
+/// @return false when all have been sending or receiving for a short time only.
 template <class Shared>
-bool close_longest_idle(Shared& shared) {
+bool close_longest_waiting(Shared& shared) {
+  const auto now = std::chrono::steady_clock::now();
   auto longest = shared.open.end();
   for (auto one = shared.open.begin(); one != shared.open.end(); ++one) {
-    const WaitingSince& since = *one->second;
-    if (since && (longest == shared.open.end() || *since < **longest->second)) longest = one;
+    const Waiting& waiting = *one->second;
+    if (waiting.what >= Waiting::For::body && now - waiting.since < kInPeace) continue;
+    const bool is_longer = longest == shared.open.end() ||
+                           std::pair{waiting.what, waiting.since} <
+                               std::pair{longest->second->what, longest->second->since};
+    if (is_longer) longest = one;
   }
   if (longest == shared.open.end()) return false;
   longest->first->close();
@@ -146,7 +153,7 @@ bool close_longest_idle(Shared& shared) {
 template <class Shared>
 void receive(const std::shared_ptr<Shared>& shared, tcp::socket socket) {
   const auto limit = static_cast<std::size_t>(shared->connections_max);
-  const bool is_welcome = shared->open.size() < limit || close_longest_idle(*shared);
+  const bool is_welcome = shared->open.size() < limit || close_longest_waiting(*shared);
   if (shared->open.size() >= 2 * limit) return;
   const auto executor = shared->acceptor.get_executor();
   if (shared->tls) {
@@ -219,12 +226,14 @@ Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& context,
                                              std::to_string(options.port) + ": " + error.message());
   }
   shared->connections_max = options.connections_max;
-  shared->rules = {.token = options.token,
-                   .open_paths = options.open_paths,
+  shared->rules = {.access = options.access,
                    .origins = options.origins,
                    .body_max = options.body_max,
                    .header_max = options.header_max,
                    .slow_client = options.slow_client};
+  // Elsewhere the token is what a page of somebody else does not have.
+  AccessRules& access = shared->rules.access;
+  access.checks_host = endpoint.address().is_loopback() || !access.names.empty();
   boost::asio::co_spawn(context, accept_all(shared), asio::rethrown);
   return std::unique_ptr<Server>{new Server{std::move(shared)}};
 }
@@ -238,7 +247,9 @@ std::uint16_t Server::port() const {
   return shared_->acceptor.local_endpoint(ignored).port();
 }
 
-void Server::set_token(std::string token) { shared_->rules.token = std::move(token); }
+void Server::set_tokens(std::vector<Token> tokens) {
+  shared_->rules.access.tokens = std::move(tokens);
+}
 
 void Server::set_tls(Tls tls) {
   assert(shared_->tls != nullptr && tls != nullptr);
@@ -249,7 +260,7 @@ void Server::stop() {
   shared_->rules.is_stopping = true;
   boost::system::error_code ignored;
   shared_->acceptor.close(ignored);
-  for (const auto& [stream, waiting_since] : shared_->open) stream->close();
+  for (const auto& [stream, waiting] : shared_->open) stream->close();
 }
 
 }  // namespace recald::http

@@ -9,7 +9,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "adapters/http/access.hpp"
 #include "adapters/http/message.hpp"
 #include "core/result.hpp"
 
@@ -35,13 +37,13 @@ using Tls = std::shared_ptr<boost::asio::ssl::context>;
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< Numeric, IPv4 or IPv6.
   std::uint16_t port = 8080;          ///< 0: any free port.
-  std::string token;                  ///< Empty: no token is required.
-  std::set<std::string> open_paths;   ///< Answered without the token.
-  std::set<std::string> origins;      ///< Whose pages may ask from a browser; empty: none but ours.
+  /// `checks_host` is set by the server: on a loopback address always, elsewhere with `names`.
+  AccessRules access;
+  std::set<std::string> origins;  ///< Whose pages may ask from a browser; empty: none but ours.
   std::optional<TlsFiles> tls;
   std::size_t body_max = 1024 * 1024;
   std::size_t header_max = 16 * 1024;  ///< Includes the request line.
-  int connections_max = 64;            ///< A further one replaces an idle one, or gets a 503.
+  int connections_max = 64;            ///< A further one replaces one that waits, or gets a 503.
   /// For a whole request to arrive, for a response to leave, and between two requests.
   std::chrono::milliseconds slow_client{10'000};
 };
@@ -50,9 +52,10 @@ class Server {
  public:
   /// Starts listening; connections are served while the context runs.
   ///
-  /// The server itself answers clients' mistakes: 400 malformed, 401 without the token (before the
-  /// body is read), 413 and 431 too large, 503 too many connections. It disconnects slow clients,
-  /// and if there are too many connections, the one that has waited longest for a request.
+  /// The server itself answers clients' mistakes: 400 malformed, 401, 403 and 421 as
+  /// `refusal_of_access` (before the body is read), 413 and 431 too large, 503 too many
+  /// connections. It disconnects slow clients, and if there are too many connections, one that
+  /// waits.
   /// @param context  Run by one thread; outlives this.
   /// @param handler  Called on that thread, with whole requests only. If it throws, we send a 500.
   /// @return the server; or invalid_value: not a numeric address, or one that others can reach
@@ -67,8 +70,8 @@ class Server {
 
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Replaces the token without a restart.
-  void set_token(std::string token);
+  /// Replaces the tokens without a restart.
+  void set_tokens(std::vector<Token> tokens);
 
   /// Replaces the certificate for new connections; open ones keep theirs.
   /// @pre the server listens with TLS; `tls` is not empty

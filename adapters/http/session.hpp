@@ -11,14 +11,17 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/stream_traits.hpp>
 #include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/error.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 
 #include "adapters/http/exchange.hpp"
+#include "adapters/http/turns.hpp"
 
 namespace recald::http {
 
@@ -31,18 +34,28 @@ void set_deadline(Stream& stream, std::chrono::milliseconds length) {
   }
 }
 
+/// What a session waits for: nothing else takes its time, as the handler answers at once.
+struct Waiting {
+  /// The first are the first to be closed when there are too many.
+  enum class For : std::uint8_t {
+    leave,     ///< It has had its last response.
+    request,   ///< Or the rest of its head.
+    body,      ///< The rest of it.
+    response,  ///< Its turn, or that the client receives it.
+  };
+  For what = For::request;
+  std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+};
+
 template <class Stream>
 class Session {
  public:
   /// @param rules, handler  Outlive the session; may change between two requests.
-  Session(Stream& stream, const SessionRules& rules, const Handler& handler)
-      : stream_(stream), rules_(rules), handler_(handler) {}
+  /// @param turns           Of all sessions; outlives this one.
+  Session(Stream& stream, const SessionRules& rules, const Handler& handler, Turns& turns)
+      : stream_(stream), rules_(rules), handler_(handler), turns_(turns) {}
 
-  using Time = std::chrono::steady_clock::time_point;
-
-  /// Since when the session has waited for a request or the rest of its head. Absent while a
-  /// request is being answered.
-  [[nodiscard]] const std::optional<Time>& waiting_since() const { return waiting_since_; }
+  [[nodiscard]] const Waiting& waiting() const { return waiting_; }
 
   /// Runs until the client leaves, is too slow, asks to close, or sends something unreadable.
   boost::asio::awaitable<void> run() {
@@ -70,13 +83,15 @@ class Session {
     parser.body_limit(rules_.body_max);
     set_deadline(stream_, rules_.slow_client);
     Error error;
-    waiting_since_ = std::chrono::steady_clock::now();
-    co_await boost::beast::http::async_read_header(stream_, buffer_, parser, into(error));
-    waiting_since_.reset();
+    bool is_folded = false;
+    wait_for(Waiting::For::request);
+    co_await read_head(parser, is_folded, error);
     Result<Request> request;
     std::optional<Response> refusal;
     if (error) {
       refusal = refusal_of(error);
+    } else if (is_folded) {
+      refusal = bad_request({ErrorCode::malformed, "a header goes on in the next line"});
     } else if (request = request_head(parser.get()); !request) {
       refusal = bad_request(request.error());
     } else {
@@ -94,18 +109,51 @@ class Session {
 
     request->body = std::move(parser.get().body());
     const bool keep_alive = parser.get().keep_alive();
-    const Response response =
-        readable_by_origin(*request, rules_, dressed(*request, called(handler_, *request)));
+    wait_for(Waiting::For::response);
+    const auto make_answer = [&] {
+      if (rules_.is_stopping) return Response{};  // the handler's owner may be gone
+      return dressed(*request, called(handler_, *request));
+    };
+    Response answer;
+    if (rules_.access.open_paths.contains(request->path)) {
+      answer = make_answer();
+    } else {
+      answer = co_await turns_.in_turn(stream_.get_executor(), make_answer);
+    }
+    if (rules_.is_stopping) co_return false;
+    const Response response = readable_by_origin(*request, rules_, std::move(answer));
     set_deadline(stream_, rules_.slow_client);
     const bool sent = co_await send(method, response, keep_alive);
     if (sent && !keep_alive) co_await part(true);
     co_return sent&& keep_alive;
   }
 
+  void wait_for(Waiting::For what) { waiting_ = {what, std::chrono::steady_clock::now()}; }
+
+  /// The parser takes a head as a whole, so that its bytes can be looked at before.
+  /// @param is_folded  Whether a line of it goes on in the next.
+  boost::asio::awaitable<void> read_head(Parser& parser, bool& is_folded, Error& error) {
+    for (;;) {
+      if (buffer_.size() > 0) {
+        const auto bytes = buffer_.data();
+        is_folded = has_folded_line({static_cast<const char*>(bytes.data()), bytes.size()});
+        buffer_.consume(parser.put(bytes, error));
+        if (error != boost::beast::http::error::need_more) co_return;
+        error = {};
+      }
+      constexpr std::size_t kAtATime = 4096;
+      const std::size_t read =
+          co_await stream_.async_read_some(buffer_.prepare(kAtATime), into(error));
+      if (error) co_return;
+      buffer_.commit(read);
+    }
+  }
+
   boost::asio::awaitable<void> read_body(const Request& request, Parser& parser, Error& error) {
     if (equals_ignoring_case(request.header("expect"), "100-continue")) {
       co_await send_continue(error);
     }
+    wait_for(Waiting::For::body);
     if (!error) co_await boost::beast::http::async_read(stream_, buffer_, parser, into(error));
   }
 
@@ -119,6 +167,7 @@ class Session {
 
   boost::asio::awaitable<bool> send(Method method, const Response& response, bool keep_alive) {
     Error error;
+    wait_for(Waiting::For::response);
     if (method == Method::head) {
       const auto message = wire_head(response, keep_alive);
       co_await boost::beast::http::async_write(stream_, message, into(error));
@@ -140,6 +189,7 @@ class Session {
   /// to the end first.
   boost::asio::awaitable<void> part(bool has_read_all) {
     Error error;
+    wait_for(Waiting::For::leave);
     if constexpr (requires { stream_.async_shutdown(into(error)); }) {
       if (!has_read_all) co_await read_the_rest();
       co_await stream_.async_shutdown(into(error));
@@ -163,7 +213,8 @@ class Session {
   Stream& stream_;
   const SessionRules& rules_;
   const Handler& handler_;
-  std::optional<Time> waiting_since_ = std::chrono::steady_clock::now();
+  Turns& turns_;
+  Waiting waiting_;
   boost::beast::flat_buffer buffer_;
 };
 

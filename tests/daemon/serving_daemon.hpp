@@ -34,11 +34,11 @@ class ServingDaemon {
 
   /// @return the whole response.
   [[nodiscard]] std::string get(const std::string& path) const {
-    return ask("GET " + path + " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+    return ask("GET " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   }
   [[nodiscard]] std::string post(const std::string& path, const std::string& json) const {
     return ask("POST " + path +
-               " HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Type: application/json\r\n"
+               " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\n"
                "Content-Length: " +
                std::to_string(json.size()) + "\r\n\r\n" + json);
   }

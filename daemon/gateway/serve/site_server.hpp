@@ -2,12 +2,16 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "adapters/http/server.hpp"
 #include "daemon/gateway/serve/api/served.hpp"
 #include "daemon/site/config/service/service_config.hpp"
 
 namespace recald::daemon {
+
+/// The tokens of [http], with their rights. @return or an error of http::read_token_file.
+[[nodiscard]] Result<std::vector<http::Token>> read_tokens(const HttpConfig& config);
 
 /// Address, token and certificate as configured. /healthz and /readyz need no token, so that a
 /// supervisor needs no secret.

@@ -41,7 +41,7 @@ TEST(Client, GetsAnAnswer) {
 }
 
 TEST(Client, SendsItsToken) {
-  RunningServer server{say_path, {.token = "0123456789abcdef"}};
+  RunningServer server{say_path, {.access = {.tokens = {{"0123456789abcdef"}}}}};
   EXPECT_EQ(get(url_of(server.port()), {.token = "0123456789abcdef"})->status, 200);
   EXPECT_EQ(get(url_of(server.port()))->status, 401);
 }
@@ -116,7 +116,7 @@ TEST_F(TlsTest, WhoComesAfterARenewalGetsTheNewCertificate) {
 }
 
 TEST_F(TlsTest, RefusalsArriveToo) {
-  RunningServer server{say_path, {.token = "0123456789abcdef", .tls = files_}};
+  RunningServer server{say_path, {.access = {.tokens = {{"0123456789abcdef"}}}, .tls = files_}};
   const auto response =
       get(url_of(server.port(), true), {.trusted_certificate = files_.certificate});
   ASSERT_TRUE(response.has_value()) << response.error().message;

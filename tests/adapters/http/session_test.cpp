@@ -28,7 +28,7 @@ class SessionTest : public ::testing::Test {
  protected:
   /// Lets the session run until it waits for the client or has ended.
   void serve(stream& server, stream& client) {
-    Session<stream> session{server, rules_, handler_};
+    Session<stream> session{server, rules_, handler_, turns_};
     context_.restart();
     boost::asio::co_spawn(
         context_, [&]() -> boost::asio::awaitable<void> { co_await session.run(); },
@@ -44,6 +44,7 @@ class SessionTest : public ::testing::Test {
 
   boost::asio::io_context context_;
   SessionRules rules_;
+  Turns turns_;
   std::vector<std::string> handled_;
   Handler handler_ = [this](const Request& request) -> Response {
     handled_.push_back(request.path);
@@ -128,7 +129,7 @@ std::string asked_from(const std::string& origin) {
 
 // A browser asks before it sends what a page of another origin wants to send.
 TEST_F(SessionTest, PagesOfOtherOriginsMayAskOnlyIfTheyAreAllowed) {
-  rules_.token = "0123456789abcdef";
+  rules_.access.tokens = {{"0123456789abcdef"}};
   rules_.origins = {"https://bms.example.org"};
   const auto answer_to = [&](const std::string& request) {
     stream server{context_};

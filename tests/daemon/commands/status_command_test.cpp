@@ -61,7 +61,7 @@ TEST_F(StatusCommand, OneObjectForMachines) {
 }
 
 TEST_F(StatusCommand, BySiteFileWithItsToken) {
-  RunningServer server{handler(), {.token = kToken}};
+  RunningServer server{handler(), {.access = {.tokens = {{kToken}}}}};
   const auto outcome =
       run({"status", site_with("[http]\nlisten = \"127.0.0.1:" + std::to_string(server.port()) +
                                "\"\ntoken_file = \"" + token_file() + "\"\n")});
@@ -70,7 +70,7 @@ TEST_F(StatusCommand, BySiteFileWithItsToken) {
 }
 
 TEST_F(StatusCommand, ATokenIsAskedFor) {
-  RunningServer server{handler(), {.token = kToken}};
+  RunningServer server{handler(), {.access = {.tokens = {{kToken}}}}};
   const auto without = run({"status", "--url", url(server)});
   EXPECT_EQ(without.exit_code, 1);
   EXPECT_THAT(without.err, HasSubstr("needs a token; name its file with --token-file"));

@@ -3,11 +3,13 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <optional>
 #include <regex>
 
+#include "core/text/ascii.hpp"
 #include "daemon/site/config/service/site_path.hpp"
 
 namespace recald::daemon {
@@ -50,6 +52,42 @@ bool is_every_interface(std::string_view address) {
   return address.find_first_not_of("0.:") == std::string_view::npos;
 }
 
+std::vector<TokenConfig> read_tokens(TomlReader& table, const std::filesystem::path& site_file) {
+  constexpr std::array<std::string_view, 3> kRights{"read", "push", "operate"};
+  std::vector<TokenConfig> tokens;
+  for (TomlReader& one : table.tables("token")) {
+    TokenConfig token{.file = resolve(site_file, one.required_text("file"), "file", one),
+                      .rights = one.one_or_more("rights").value_or(std::vector<std::string>{})};
+    if (token.rights.empty()) {
+      one.problem_at("rights", R"('rights' is needed, such as ["read"] or ["read", "push"])");
+    }
+    for (const std::string& right : token.rights) {
+      if (std::ranges::find(kRights, right) != kRights.end()) continue;
+      one.problem_at(
+          "rights", fmt::format("'rights' must be of \"read\", \"push\" (readings) and \"operate\" "
+                                "(jobs and models), not \"{}\"",
+                                right));
+    }
+    one.finish();
+    tokens.push_back(std::move(token));
+  }
+  return tokens;
+}
+
+std::vector<std::string> read_names(TomlReader& table) {
+  auto names = table.one_or_more("names").value_or(std::vector<std::string>{});
+  for (std::string& name : names) {
+    static const std::regex kHost{"[a-z0-9]([a-z0-9.-]*[a-z0-9])?"};
+    name = to_lower(name);
+    if (std::regex_match(name, kHost)) continue;
+    table.problem_at("names",
+                     fmt::format("'names' has \"{}\"; write hosts without scheme and port, "
+                                 "such as \"tower.example.org\"",
+                                 name));
+  }
+  return names;
+}
+
 }  // namespace
 
 HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) {
@@ -88,11 +126,13 @@ HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) 
     }
     config.origins.push_back(std::move(origin));
   }
+  config.tokens = read_tokens(table, site_file);
+  config.names = read_names(table);
   if (table.has("certificate_file") != table.has("key_file")) {
     table.problem("TLS needs both 'certificate_file' and 'key_file'");
   }
-  if (!is_loopback(config.address) &&
-      (!table.has("token_file") || !table.has("certificate_file"))) {
+  const bool has_token = table.has("token_file") || !config.tokens.empty();
+  if (!is_loopback(config.address) && (!has_token || !table.has("certificate_file"))) {
     table.problem_at("listen",
                      fmt::format("'listen' opens {} to other machines; add 'token_file', "
                                  "'certificate_file' and 'key_file', or listen on 127.0.0.1",

@@ -5,16 +5,25 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "adapters/toml/toml_reader.hpp"
 #include "daemon/site/config/service/schedule.hpp"
 
 namespace recald::daemon {
 
+/// A token with some rights.
+struct TokenConfig {
+  std::filesystem::path file;
+  std::vector<std::string> rights;  ///< "read", "push", "operate"
+};
+
 struct HttpConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;               ///< 0: one that is free.
-  std::filesystem::path token_file;        ///< Empty: no token is asked for.
+  std::filesystem::path token_file;        ///< With all rights; empty: none.
+  std::vector<TokenConfig> tokens;         ///< [[http.token]]; with none at all, none is asked for.
+  std::vector<std::string> names;          ///< Hosts that the server is called, in lower case.
   std::filesystem::path certificate_file;  ///< Empty: no TLS.
   std::filesystem::path key_file;
   std::vector<std::string> origins;  ///< Whose pages may ask from a browser.

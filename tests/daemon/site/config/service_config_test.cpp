@@ -80,6 +80,29 @@ TEST(HttpConfig, OtherMachinesNeedATokenAndTls) {
   }
 }
 
+TEST(HttpConfig, HasTokensWithRightsAndNames) {
+  const auto [config, problems] = http(
+      "listen = \"10.0.0.1:80\"\nnames = \"Tower.example.org\"\ncertificate_file = \"c\"\n"
+      "key_file = \"k\"\n[[token]]\nfile = \"a\"\nrights = [\"read\", \"push\"]\n"
+      "[[token]]\nfile = \"b\"\nrights = \"operate\"");
+  EXPECT_THAT(problems, IsEmpty());
+  EXPECT_THAT(config.names, ElementsAre("tower.example.org"));
+  ASSERT_EQ(config.tokens.size(), 2U);
+  EXPECT_EQ(config.tokens[0].file, "/etc/recald/a");
+  EXPECT_THAT(config.tokens[0].rights, ElementsAre("read", "push"));
+  EXPECT_THAT(config.tokens[1].rights, ElementsAre("operate"));
+  EXPECT_THAT(http("[[token]]\nfile = \"a\"\nrights = \"write\"").problems,
+              ElementsAre(HasSubstr("'rights' must be of \"read\", \"push\" (readings)")));
+  EXPECT_THAT(http("[[token]]\nfile = \"a\"").problems,
+              ElementsAre(HasSubstr("'rights' is needed")));
+  EXPECT_THAT(http("[[token]]\nrights = \"read\"").problems, ElementsAre(HasSubstr("file")));
+  for (const char* wrong : {"https://a", "a:80", "", "a b", "-a"}) {
+    EXPECT_THAT(http(("names = \"" + std::string{wrong} + "\"").c_str()).problems,
+                ElementsAre(HasSubstr("'names'")))
+        << wrong;
+  }
+}
+
 TEST(HttpConfig, OriginsAreAsBrowsersSendThem) {
   const auto [config, problems] =
       http("allow_origin = [\"https://bms.example.org\", \"http://10.0.0.7:8081\"]");
@@ -103,7 +126,7 @@ TEST(HttpConfig, MistakesAreNamedWithTheirKey) {
   }
   EXPECT_THAT(http("certificate_file = \"c\"").problems, ElementsAre(HasSubstr("TLS needs both")));
   EXPECT_THAT(http("key_file = \"c\"").problems, ElementsAre(HasSubstr("TLS needs both")));
-  EXPECT_THAT(http("token = \"c\"").problems, ElementsAre(HasSubstr("token_file")));
+  EXPECT_THAT(http("token = \"c\"").problems, ElementsAre(HasSubstr("[[http.token]]")));
   EXPECT_THAT(http("listen = 8080").problems, ElementsAre(HasSubstr("listen")));
   EXPECT_THAT(http("token_file = \"$RECALD_NO_SUCH/token\"").problems,
               ElementsAre(HasSubstr("'token_file' begins with $RECALD_NO_SUCH")));
