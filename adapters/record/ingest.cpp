@@ -21,6 +21,8 @@ using postgres::integer;
 
 /// Beyond it a store's transaction gains nothing.
 constexpr std::size_t kIntervalsAtOnce = 5'000;
+/// Of one site: four times as many as of the largest that was tried.
+constexpr std::int64_t kMetersMax = 10'000;
 
 std::int64_t seconds_of(Instant t) { return t.time_since_epoch().count(); }
 
@@ -71,9 +73,11 @@ class Taking {
   [[nodiscard]] bool is_new(const OutboxEntry& entry) const {
     return entry.number > known_.entries;
   }
-  /// The record's own number of an entry: it goes on over all outboxes of a site.
-  [[nodiscard]] std::int64_t seq_of(std::int64_t number) const {
-    return seq_ + number - known_.entries;
+  /// The record's own number of an entry: it goes on over all outboxes of a site, by one for each
+  /// entry. What a gateway calls them would not do: its numbers are somebody else's, and may jump.
+  /// @param index  In the batch, of a new one.
+  [[nodiscard]] std::int64_t seq_of(std::size_t index) const {
+    return seq_ + 1 + static_cast<std::int64_t>(index - first_new_);
   }
   [[nodiscard]] std::int64_t meter_of(const OutboxEntry& entry) const {
     return meters_.at({text_of(entry.meter), entry.interval.count()});
@@ -91,6 +95,8 @@ class Taking {
   Progress known_;                        ///< The watermark before.
   Progress until_;                        ///< The watermark after.
   std::int64_t seq_ = 0, event_seq_ = 0;  ///< Of the site, before.
+  std::size_t first_new_ = 0;             ///< Of the batch's entries, whose numbers rise.
+  std::int64_t new_events_ = 0;
   std::map<std::pair<std::string, std::int64_t>, std::int64_t> meters_;
 };
 
@@ -147,6 +153,9 @@ Result<Taking::End> Taking::run() {
             .events = beyond(known_.events, after.events, batch_.events),
             .results = beyond(known_.results, after.results, batch_.results)};
   if (until_ == known_ && !is_new_outbox_) return End::taken;
+  const auto first =
+      std::ranges::find_if(batch_.entries, [&](const OutboxEntry& one) { return is_new(one); });
+  first_new_ = static_cast<std::size_t>(first - batch_.entries.begin());
 
   auto done = find_meters();
   if (done) done = put_intervals();
@@ -175,22 +184,33 @@ Result<void> Taking::find_meters() {
     if (is_new(entry) && !is_lost) wanted.emplace(text_of(entry.meter), entry.interval.count());
   }
   if (wanted.empty()) return {};
-  const auto known = TRY(connection_.run("SELECT id, interval_s, number FROM meter WHERE site = $1",
-                                         {integer(site_)}));
+  Array asked;
+  for (const auto& [id, interval] : wanted) asked.add(id);
+  const auto known = TRY(connection_.run(
+      "SELECT id, interval_s, number FROM meter WHERE site = $1 AND id = ANY($2::text[])",
+      {integer(site_), asked.parameter()}));
   for (int i = 0; i < known.size(); ++i) {
     meters_[{std::string{known.text(i, 0)}, known.integer(i, 1)}] = known.integer(i, 2);
   }
-  auto last = static_cast<std::int64_t>(meters_.size());
+  const bool all_known =
+      std::ranges::all_of(wanted, [&](const auto& one) { return meters_.contains(one); });
+  if (all_known) return {};
+  const auto rows = TRY(connection_.run(
+      "SELECT coalesce(max(number), 0) FROM meter WHERE site = $1", {integer(site_)}));
+  auto last = rows.integer(0, 0);
   Array ids, intervals, numbers;
-  bool has_more = false;
   for (const auto& one : wanted) {
     if (!meters_.emplace(one, last + 1).second) continue;
-    has_more = true;
     ids.add(one.first);
     intervals.add(one.second);
     numbers.add(++last);
   }
-  if (!has_more) return {};
+  if (last > kMetersMax) {
+    return failure(ErrorCode::out_of_range,
+                   fmt::format("the site would have {} meters in the record, which takes {}; its "
+                               "gateway makes up names of meters",
+                               last, kMetersMax));
+  }
   return nothing_or_error(connection_.run(
       "INSERT INTO meter (site, number, id, interval_s) SELECT $1, * FROM "
       "unnest($2::smallint[], $3::text[], $4::int[])",
@@ -202,13 +222,14 @@ Result<void> Taking::find_meters() {
 Result<void> Taking::put_intervals() {
   Array starts, seqs, means, reasons, meters, validities, late;
   bool has_any = false;
-  for (const OutboxEntry& entry : batch_.entries) {
+  for (std::size_t i = first_new_; i < batch_.entries.size(); ++i) {
+    const OutboxEntry& entry = batch_.entries[i];
     const auto* const interval = std::get_if<StoredInterval>(&entry.stored);
-    if (interval == nullptr || !is_new(entry)) continue;
+    if (interval == nullptr) continue;
     has_any = true;
     const metering::Reading& reading = interval->reading;
     starts.add(seconds_of(reading.start));
-    seqs.add(seq_of(entry.number));
+    seqs.add(seq_of(i));
     means.add(reading.mean_kW);
     reasons.add(static_cast<std::int64_t>(reading.reasons));
     meters.add(meter_of(entry));
@@ -234,13 +255,14 @@ Result<void> Taking::put_intervals() {
 Result<void> Taking::put_months() {
   Array meters, months, seqs, figures, closed, releases;
   bool has_any = false;
-  for (const OutboxEntry& entry : batch_.entries) {
+  for (std::size_t i = first_new_; i < batch_.entries.size(); ++i) {
+    const OutboxEntry& entry = batch_.entries[i];
     const auto* const month = std::get_if<StoredMonth>(&entry.stored);
-    if (month == nullptr || !is_new(entry)) continue;
+    if (month == nullptr) continue;
     has_any = true;
     meters.add(meter_of(entry));
     months.add(metering::to_string(month->figure.month));
-    seqs.add(seq_of(entry.number));
+    seqs.add(seq_of(i));
     StoredMonth plain = *month;
     plain.figure.unusable_because = text_of(plain.figure.unusable_because);
     plain.time_zone_release = text_of(plain.time_zone_release);
@@ -309,7 +331,7 @@ Result<void> Taking::put_events() {
   for (const StoreEvent& event : batch_.events) {
     if (event.number <= known_.events) continue;
     has_any = true;
-    numbers.add(event_seq_ + event.number - known_.events);
+    numbers.add(event_seq_ + ++new_events_);
     times.add(seconds_of(event.time));
     severities.add(static_cast<std::int64_t>(event.severity));
     kinds.add(text_of(limited(event.kind, kEventWordMax)));
@@ -349,6 +371,8 @@ Result<void> Taking::put_results() {
 
 Result<void> Taking::put_watermark() {
   const bool is_end = until_.entries == kHistorySent;  // which is no row
+  const auto rows =
+      static_cast<std::int64_t>(batch_.entries.size() - first_new_) - (is_end ? 1 : 0);
   postgres::Parameter newest;
   for (const OutboxEntry& entry : batch_.entries) {
     const auto* const interval = std::get_if<StoredInterval>(&entry.stored);
@@ -364,8 +388,8 @@ Result<void> Taking::put_watermark() {
       "ELSE greatest(newest, $8::timestamptz) END "
       "WHERE number = $1",
       {integer(site_), integer(batch_.outbox), integer(until_.entries), integer(until_.events),
-       integer(until_.results), integer(is_end ? seq_ : seq_of(until_.entries)),
-       integer(event_seq_ + until_.events - known_.events), newest}));
+       integer(until_.results), integer(seq_ + std::max<std::int64_t>(rows, 0)),
+       integer(event_seq_ + new_events_), newest}));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "adapters/record/record_batch.hpp"
 #include "adapters/record/schema.hpp"
 #include "adapters/record/sites.hpp"
+#include "core/text/limited.hpp"
 #include "daemon/fleet/config/open_record.hpp"
 #include "daemon/gateway/forward/open_broker.hpp"
 
@@ -32,6 +33,8 @@ constexpr seconds kAnswerMax{20};
 constexpr std::size_t kAtOnce = 32;  ///< Batches between two rounds of telling their gateways.
 constexpr std::size_t kWaiting_bytes_max = 64 * 1024 * 1024;
 constexpr std::chrono::minutes kReportRefusalsEvery{10};
+constexpr std::size_t kReason_max = 300;
+constexpr int kReasons_max = 20;  // of a site, in that time
 
 /// What has arrived and is not committed. It is no promise to anybody: what does not fit is
 /// dropped, and its gateway sends it again.
@@ -192,11 +195,17 @@ class Ingester {
     return mqtt::Message{};
   }
 
+  /// Each reason of a site once in a while: the second must not hide behind the first.
   void refuse(const std::string& site, const std::string& why) {
     const auto moment = steady_clock::now();
-    const auto known = refused_.find(site);
-    if (known != refused_.end() && moment - known->second < kReportRefusalsEvery) return;
-    refused_[site] = moment;
+    std::erase_if(refused_,
+                  [&](const auto& one) { return moment - one.second >= kReportRefusalsEvery; });
+    // Numbers in a sentence change from one batch to the next, and are the same reason.
+    std::string reason = limited(why, kReason_max);
+    std::erase_if(reason, [](char c) { return c >= '0' && c <= '9'; });
+    const auto of_site =
+        std::ranges::count_if(refused_, [&](const auto& one) { return one.first.first == site; });
+    if (of_site >= kReasons_max || !refused_.try_emplace({site, reason}, moment).second) return;
     notify_(why);
   }
 
@@ -204,7 +213,7 @@ class Ingester {
   const Report& notify_;
   const std::stop_token& stop_;
   IngestCounts& counts_;
-  std::map<std::string, steady_clock::time_point> refused_;
+  std::map<std::pair<std::string, std::string>, steady_clock::time_point> refused_;
 };
 
 }  // namespace

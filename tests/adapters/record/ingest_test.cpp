@@ -88,6 +88,49 @@ TEST_F(Record, TwoConnectionsWithTheSameBatchesTakeEachOnce) {
   EXPECT_EQ(ask("SELECT count(*) FROM meter"), "1\n");
 }
 
+// A broken or hostile gateway: the record's own numbers go on by one an entry all the same.
+TEST_F(Record, NumbersThatJumpDoNotReachTheRecordsOwn) {
+  ASSERT_TRUE(send(intervals(0, 2)));
+  for (int i = 0; i < 10; ++i) {
+    const std::int64_t outbox = 100 + i;
+    ASSERT_TRUE(send(end_of_history(outbox)));
+    RecordBatch far{.outbox = outbox, .after = {}, .is_first = true};
+    far.entries = {interval_entry((std::int64_t{1} << 60) - 1, "steam", kMarch, 12.0 + i)};
+    far.events = {{.time = kMarch, .kind = "odd", .number = (std::int64_t{1} << 60) - 1}};
+    const auto taken = send(far);
+    ASSERT_TRUE(taken) << taken.error().message;
+    EXPECT_EQ(taken->until.entries, (std::int64_t{1} << 60) - 1);
+  }
+  EXPECT_EQ(ask("SELECT seq, event_seq FROM site WHERE id = 'tower'"), "12|10\n");
+  EXPECT_EQ(ask("SELECT max(number) FROM event"), "10\n");
+  // A correction is the newest, whatever came before.
+  RecordBatch correction{.outbox = 11, .after = entries(2)};
+  correction.entries = {interval_entry(3, "steam", kMarch, 200.0)};
+  ASSERT_TRUE(send(correction));
+  EXPECT_EQ(ask("SELECT mean_kw FROM interval ORDER BY seq DESC LIMIT 1"), "200\n");
+}
+
+TEST_F(Record, ASiteHasALimitOfMeters) {
+  int number = 0;
+  const auto send_meters = [&](int count) {
+    RecordBatch batch{.outbox = 11, .after = entries(number)};
+    for (int i = 0; i < count; ++i) {
+      ++number;
+      batch.entries.push_back(interval_entry(number, "m" + std::to_string(number), kMarch, 1.0));
+    }
+    const auto taken = send(batch);
+    if (!taken) number -= count;
+    return taken;
+  };
+  ASSERT_TRUE(send_meters(9'999));
+  ASSERT_TRUE(send_meters(1));
+  const auto refused = send_meters(1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_range);
+  EXPECT_THAT(refused.error().message, HasSubstr("10001 meters in the record, which takes 10000"));
+  EXPECT_EQ(ask("SELECT count(*) FROM meter"), "10000\n");
+}
+
 // A backup of the record was restored: gateways have forgotten what it had confirmed since.
 TEST_F(Record, ARecordThatLostConfirmedEntriesReportsItAndAcceptsNothing) {
   ASSERT_TRUE(send(intervals(0, 5)));
