@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 /// A register map of one's own is named by the file that it is in.
 void add_map(const MeterConfig& meter, const fs::path& folder, std::vector<fs::path>& paths) {
   if (!meter.live) return;
-  const toml::table table = toml::parse(meter.text);
+  const toml::table table = parse_toml(meter.text);
   const auto name = table["map"].value<std::string>();
   if (name && name->ends_with(".toml")) paths.push_back(folder / *name);
 }
@@ -49,7 +49,21 @@ std::vector<fs::path> named_paths(const SiteConfig& site) {
 Result<void> add_file(const fs::path& file, const fs::path& folder,
                       record::SiteDescription& description) {
   const std::string name = file.lexically_relative(folder).generic_string();
-  if (name.empty() || name.starts_with("..")) {
+  const auto is_outside = [](const std::string& path) {
+    return path.empty() || path == ".." || path.starts_with("../");
+  };
+  std::error_code ignored;
+  const std::string real = fs::weakly_canonical(file, ignored)
+                               .lexically_relative(fs::weakly_canonical(folder, ignored))
+                               .generic_string();
+  if (!is_outside(name) && is_outside(real)) {
+    return failure(
+        ErrorCode::invalid_value,
+        fmt::format("'{}' is a link, or lies behind one, that leads out of the folder of "
+                    "the site file; put the file itself there",
+                    name));
+  }
+  if (is_outside(name)) {
     return failure(
         ErrorCode::invalid_value,
         fmt::format("'{}' lies outside the folder of the site file, so workers elsewhere "
@@ -69,6 +83,11 @@ Result<void> add_path(const fs::path& path, const fs::path& folder,
     return is_file ? add_file(path, folder, description) : Result<void>{};
   }
   for (const auto& entry : fs::recursive_directory_iterator{path, ignored}) {
+    if (entry.is_symlink(ignored) && entry.is_directory(ignored)) {
+      return failure(ErrorCode::invalid_value,
+                     fmt::format("'{}' is a link to a folder; put the folder itself there",
+                                 entry.path().string()));
+    }
     if (!entry.is_regular_file(ignored)) continue;
     if (auto added = add_file(entry.path(), folder, description); !added) return added;
   }

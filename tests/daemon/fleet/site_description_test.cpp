@@ -58,6 +58,25 @@ TEST_F(SiteDescriptionTest, RefusesWhatAWorkerWouldNotFind) {
   EXPECT_THAT(site.error().message, HasSubstr("elsewhere.csv' lies outside the folder"));
 }
 
+// What they lead to would lie in the record, for everybody who reads it.
+TEST_F(SiteDescriptionTest, RefusesLinksThatLeaveTheFolder) {
+  namespace fs = std::filesystem;
+  const fs::path site = folder_ / "site";
+  const auto refusal = [&](const std::string& weather) {
+    const auto described = describe_with(weather);
+    return described ? std::string{"taken"} : described.error().message;
+  };
+  fs::create_symlink("/etc/hostname", site / "weather" / "out.csv");
+  EXPECT_THAT(refusal("weather/out.csv"), HasSubstr("'weather/out.csv' is a link"));
+  fs::create_symlink("../../elsewhere.csv", site / "weather" / "up.csv");
+  EXPECT_THAT(refusal("weather/up.csv"), HasSubstr("'weather/up.csv' is a link"));
+  fs::create_directory_symlink(folder_.path(), site / "behind");
+  EXPECT_THAT(refusal("behind/elsewhere.csv"),
+              HasSubstr("'behind/elsewhere.csv' is a link, or lies"));
+  fs::create_symlink("city.csv", site / "weather" / "inside.csv");
+  EXPECT_EQ(refusal("weather/inside.csv"), "taken");
+}
+
 TEST_F(SiteDescriptionTest, RefusesAFileThatIsNotThereAndASiteWithoutAModel) {
   const auto lacking = describe_with("weather/none.csv");
   ASSERT_FALSE(lacking);
