@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "adapters/curl/transfer.hpp"
+#include "adapters/http/url.hpp"
 
 namespace recald::delivery {
 namespace {
@@ -53,9 +54,9 @@ Handle begin(const std::string& url, const char* protocols,
   curl_easy_setopt(handle.get(), CURLOPT_XFERINFOFUNCTION, ask_whether_to_stop);
   curl_easy_setopt(handle.get(), CURLOPT_XFERINFODATA, &stop);
   // The proxy of the environment is for the world outside.
-  const std::string host = host_of(url);
-  const bool is_this_machine = host == "localhost" || host == "[::1]" || host.starts_with("127.");
-  if (is_this_machine) curl_easy_setopt(handle.get(), CURLOPT_NOPROXY, "*");
+  std::string host = host_of(url);
+  if (host.starts_with('[')) host = host.substr(1, host.size() - 2);
+  if (http::is_this_machine(host)) curl_easy_setopt(handle.get(), CURLOPT_NOPROXY, "*");
   return handle;
 }
 

@@ -1,15 +1,13 @@
 #include "adapters/http/access.hpp"
 
-#include <utility>  // Boost 1.74's Asio uses std::exchange without it
-
 #include <algorithm>
 #include <array>
-#include <boost/asio/ip/address.hpp>
 #include <cstddef>
 
 #include "adapters/http/ascii.hpp"
 #include "adapters/http/credentials.hpp"
 #include "adapters/http/dress.hpp"
+#include "adapters/http/url.hpp"
 #include "core/text/printable.hpp"
 
 namespace recald::http {
@@ -25,14 +23,6 @@ std::string host_in(std::string_view field) {
   host = host.substr(0, host.find(':'));
   if (host.ends_with('.')) host.pop_back();
   return host;
-}
-
-/// Names that every machine has for itself, which no name server is asked for.
-bool is_this_machine(const std::string& host) {
-  if (host == "localhost" || host.ends_with(".localhost")) return true;
-  boost::system::error_code error;
-  const auto address = boost::asio::ip::make_address(host, error);
-  return !error && address.is_loopback();
 }
 
 Right right_for(const Request& request, const AccessRules& rules) {

@@ -1,5 +1,7 @@
 #include "adapters/http/url.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <charconv>
 #include <optional>
@@ -31,6 +33,16 @@ std::string Url::authority() const {
 }
 
 std::string Url::text() const { return (is_tls ? "https://" : "http://") + authority() + path; }
+
+bool is_this_machine(const std::string& host) {
+  if (host == "localhost" || host.ends_with(".localhost")) return true;
+  in6_addr v6{};
+  if (::inet_pton(AF_INET6, host.c_str(), &v6) == 1) {
+    return IN6_IS_ADDR_LOOPBACK(&v6) || (IN6_IS_ADDR_V4MAPPED(&v6) && v6.s6_addr[12] == 127);
+  }
+  in_addr v4{};
+  return ::inet_pton(AF_INET, host.c_str(), &v4) == 1 && ntohl(v4.s_addr) >> 24U == 127;
+}
 
 Result<Url> parse_url(std::string_view text) {
   const auto wrong = [&](const char* why) {

@@ -21,6 +21,11 @@ struct Url {
   [[nodiscard]] std::string authority() const;
 };
 
+/// Whether what is sent to that host stays on this machine: localhost and the addresses of
+/// loopback, not a name that only begins like one. @param host  In lower case, IPv6 without
+/// brackets.
+[[nodiscard]] bool is_this_machine(const std::string& host);
+
 /// "http://host[:port][/path]" or https; the port is 80 or 443 unless given.
 /// @return the address, or malformed.
 [[nodiscard]] Result<Url> parse_url(std::string_view text);

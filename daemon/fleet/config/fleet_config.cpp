@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 
+#include "adapters/http/url.hpp"
 #include "adapters/system/files/read_file.hpp"
 #include "adapters/toml/toml_reader.hpp"
 #include "daemon/site/config/service/server_access.hpp"
@@ -13,6 +15,41 @@ namespace recald::daemon {
 namespace {
 
 constexpr double kMegabyte = 1e6;
+
+/// Whether libpq might send a password to another machine that only says that it is the database:
+/// its default, and `allow` and `prefer`, take what the server offers.
+bool is_in_the_clear(const std::string& url) {
+  const std::size_t begin = url.find("//") + 2;
+  const std::size_t end = std::min(url.find_first_of("/?", begin), url.size());
+  std::string hosts = url.substr(begin, end - begin);
+  hosts = hosts.substr(hosts.find('@') == std::string::npos ? 0 : hosts.find('@') + 1);
+  std::string_view options{url};
+  options.remove_prefix(std::min(url.find('?', begin), url.size()));
+  const auto option = [&](std::string_view name) -> std::string {
+    for (std::size_t at = options.find(name); at != std::string_view::npos;
+         at = options.find(name, at + 1)) {
+      if (at == 0 || (options[at - 1] != '?' && options[at - 1] != '&')) continue;
+      const std::string_view rest = options.substr(at + name.size());
+      return std::string{rest.substr(0, rest.find('&'))};
+    }
+    return "";
+  };
+  const std::string mode = option("sslmode=");
+  if (mode == "verify-full" || mode == "verify-ca" || mode == "require" || mode == "disable") {
+    return false;
+  }
+  hosts += "," + option("host=") + "," + option("hostaddr=");
+  for (std::string_view rest{hosts}; !rest.empty();) {
+    std::string host{rest.substr(0, rest.find(','))};
+    rest.remove_prefix(std::min(host.size() + 1, rest.size()));
+    const bool is_v6 = host.starts_with('[');
+    host = is_v6 ? host.substr(1, host.find(']') - 1) : host.substr(0, host.find(':'));
+    const bool is_socket =
+        host.empty() || host.starts_with('/') || host.starts_with("%2F") || host.starts_with("%2f");
+    if (!is_socket && !http::is_this_machine(host)) return true;
+  }
+  return false;
+}
 
 RecordConfig read_record(TomlReader& table, const std::filesystem::path& file) {
   RecordConfig config{.url = table.required_text("url"),
@@ -31,6 +68,13 @@ RecordConfig read_record(TomlReader& table, const std::filesystem::path& file) {
   const std::size_t at = authority.find('@');
   if (at != std::string::npos && authority.substr(0, at).find(':') != std::string::npos) {
     table.problem_at("url", "'url' has a password in it; write it into 'password_file'");
+  }
+  if (is_address && is_in_the_clear(config.url)) {
+    table.problem_at(
+        "url",
+        "'url' leads to another machine without saying whether that is verified; end "
+        "it in \"?sslmode=verify-full&sslrootcert=FILE\", or in \"?sslmode=disable\" if "
+        "the network in between is trusted");
   }
   table.finish();
   return config;
@@ -85,7 +129,7 @@ tl::expected<FleetConfig, std::vector<std::string>> parse_fleet(std::string_view
   const std::string name = file.filename().string();
   FleetConfig config{.file = file};
   try {
-    const toml::table root = toml::parse(text, name);
+    const toml::table root = parse_toml(text, name);
     read_root(TomlReader{root, name, "", problems}, config);
   } catch (const toml::parse_error& error) {
     problems.push_back(syntax_problem(name, error));

@@ -7,7 +7,8 @@
 namespace recald::daemon {
 namespace {
 
-constexpr auto kRecord = "[record]\nurl = \"postgresql://recald@db.example.org/fleet\"\n";
+constexpr auto kRecord =
+    "[record]\nurl = \"postgresql://recald@db.example.org/fleet?sslmode=verify-full\"\n";
 
 std::vector<std::string> problems_of(const std::string& text) {
   const auto config = parse_fleet(text, "/etc/recald/fleet.toml");
@@ -44,10 +45,35 @@ TEST(FleetConfig, TheExampleIsRead) {
 
 TEST(FleetConfig, AnAddressWithAPasswordIsRefusedWithoutRepeatingIt) {
   const auto problems =
-      problems_of("[record]\nurl = \"postgresql://recald:hunter2@db.example.org/fleet\"\n");
+      problems_of("[record]\nurl = \"postgresql://recald:hunter2@localhost/fleet\"\n");
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_NE(problems.front().find("password_file"), std::string::npos) << problems.front();
   EXPECT_EQ(problems.front().find("hunter2"), std::string::npos) << problems.front();
+}
+
+// libpq gives the password to whoever answers, unless it is told to look.
+TEST(FleetConfig, ADatabaseElsewhereIsVerifiedOrSaidToBeTrusted) {
+  const auto is_refused = [](const std::string& url) {
+    const auto problems = problems_of("[record]\nurl = \"" + url + "\"\n");
+    return !problems.empty() && problems.front().find("sslmode=verify-full") != std::string::npos;
+  };
+  for (const char* here :
+       {"postgresql://recald@localhost/fleet", "postgresql://recald@127.0.0.1:5433/fleet",
+        "postgresql://[::1]:5432/fleet", "postgresql:///fleet", "postgresql:///fleet?host=/run/pg",
+        "postgresql://recald@%2Frun%2Fpostgresql/fleet", "postgresql://localhost,127.0.0.2/fleet",
+        "postgresql://db/fleet?sslmode=verify-full&sslrootcert=/etc/ca.pem",
+        "postgresql://db/fleet?application_name=x&sslmode=disable",
+        "postgresql://db?sslmode=require"}) {
+    EXPECT_FALSE(is_refused(here)) << here;
+  }
+  for (const char* elsewhere :
+       {"postgresql://recald@db.example.org/fleet", "postgres://db/fleet?sslmode=prefer",
+        "postgresql://db/fleet?sslmode=allow", "postgresql://localhost,db.example.org/fleet",
+        "postgresql://127.0.0.1.example.org/fleet", "postgresql:///fleet?host=db.example.org",
+        "postgresql://localhost/fleet?hostaddr=10.0.0.5", "postgresql://[2001:db8::1]:5432/fleet",
+        "postgresql://db/fleet?xsslmode=disable", "postgresql://db/sslmode=disable"}) {
+    EXPECT_TRUE(is_refused(elsewhere)) << elsewhere;
+  }
 }
 
 TEST(FleetConfig, SaysWhatIsMissingOrWrong) {

@@ -48,9 +48,10 @@ WebhookConfig read_webhook(TomlReader table, const std::filesystem::path& site_f
                      "'url' is no address of http or https; write one such as "
                      "\"https://hooks.example.org/recald\"");
   }
-  if (url && !url->is_tls && !is_this_machine(url->host) && !config.token_file.empty()) {
-    table.problem_at("url", "'url' would send the token without encryption; use https");
-  }
+  check_encryption(table, {.is_tls = url && url->is_tls,
+                           .host = url ? url->host : "",
+                           .secret = config.token_file.empty() ? "" : "token",
+                           .encrypted_scheme = "https"});
   table.finish();
   return config;
 }
@@ -74,8 +75,8 @@ MailConfig read_mail(TomlReader table, const std::filesystem::path& site_file) {
                                  "\"smtps://mail.example.org\" or \"smtp://mail.example.org:587\"",
                                  config.server));
   }
-  config.encrypts = table.boolean("encrypt").value_or(!host || !is_this_machine(*host));
-  if (!config.encrypts && !config.user.empty() && host && !is_this_machine(*host)) {
+  config.encrypts = table.boolean("encrypt").value_or(!host || !http::is_this_machine(*host));
+  if (!config.encrypts && !config.user.empty() && host && !http::is_this_machine(*host)) {
     table.problem_at("encrypt",
                      "the password would be sent without encryption; leave 'encrypt' "
                      "out, or 'user' and 'password_file'");

@@ -27,11 +27,12 @@ std::optional<http::Url> parse_broker(std::string_view url) {
 }
 
 /// Secrets and certificates need a connection that is encrypted.
-void check_encryption(TomlReader& table, const BrokerConfig& config) {
+void check_certificates(TomlReader& table, const BrokerConfig& config) {
+  check_encryption(table, {.is_tls = config.is_tls,
+                           .host = config.host,
+                           .secret = config.login.user.empty() ? "" : "password",
+                           .encrypted_scheme = "mqtts"});
   if (config.is_tls || config.host.empty()) return;
-  if (!is_this_machine(config.host) && !config.login.user.empty()) {
-    table.problem_at("url", "'url' would send the password without encryption; use mqtts");
-  }
   for (const char* key : {"trusted_certificate", "certificate_file"}) {
     if (!table.has(key)) continue;
     table.problem_at(
@@ -66,7 +67,7 @@ BrokerConfig read_broker(TomlReader& table, const std::filesystem::path& site_fi
   if (config.certificate_file.empty() != config.key_file.empty()) {
     table.problem("'certificate_file' and 'key_file' belong together");
   }
-  check_encryption(table, config);
+  check_certificates(table, config);
   config.client_id = table.text_or("client_id", client_id);
   if (config.client_id.empty() || config.client_id.find_first_of(" \t\r\n") != std::string::npos) {
     table.problem_at("client_id",

@@ -29,9 +29,10 @@ RemoteWriteConfig read_remote_write(TomlReader& table, const std::filesystem::pa
     table.problem_at("url", "'url' names no database; end it in \"/write?db=NAME\"");
   }
   const bool has_secret = !config.token_file.empty() || !config.login.user.empty();
-  if (url && !url->is_tls && has_secret && !is_this_machine(url->host)) {
-    table.problem_at("url", "'url' would send the token or password without encryption; use https");
-  }
+  check_encryption(table, {.is_tls = url && url->is_tls,
+                           .host = url ? url->host : "",
+                           .secret = has_secret ? "token or password" : "",
+                           .encrypted_scheme = "https"});
   if (!config.token_file.empty() && !config.login.user.empty()) {
     table.problem_at("token_file", "the server takes a token or a user, not both");
   }

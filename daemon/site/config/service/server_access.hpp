@@ -13,9 +13,6 @@ namespace recald::daemon {
 [[nodiscard]] std::filesystem::path read_path(TomlReader& table, std::string_view key,
                                               const std::filesystem::path& site_file);
 
-/// Whether what is sent to that host stays on this machine.
-[[nodiscard]] bool is_this_machine(std::string_view host);
-
 struct Login {
   std::string user;                     ///< Empty: the server asks for none.
   std::filesystem::path password_file;  ///< Of the user.
@@ -25,5 +22,16 @@ struct Login {
 
 /// `user` and `password_file`, which belong together.
 [[nodiscard]] Login read_login(TomlReader& table, const std::filesystem::path& site_file);
+
+/// How a server of that table is reached.
+struct Reach {
+  bool is_tls;
+  std::string host;                   ///< Empty: of no address, which was said already.
+  std::string_view secret;            ///< "password", what it would be sent; empty: nothing.
+  std::string_view encrypted_scheme;  ///< "https"
+};
+
+/// What leaves this machine is encrypted, or the table says `encrypt = false`; secrets always are.
+void check_encryption(TomlReader& table, const Reach& reach);
 
 }  // namespace recald::daemon

@@ -9,6 +9,7 @@
 #include <optional>
 #include <regex>
 
+#include "adapters/http/url.hpp"
 #include "core/text/ascii.hpp"
 #include "daemon/site/config/service/site_path.hpp"
 
@@ -35,10 +36,6 @@ std::optional<Endpoint> parse_endpoint(std::string_view text) {
     return {};  // an IPv6 address without brackets: where does the port begin?
   }
   return Endpoint{std::string{address}, port};
-}
-
-bool is_loopback(std::string_view address) {
-  return address == "::1" || address.starts_with("127.");
 }
 
 bool is_ip_address(const std::string& text) {
@@ -132,7 +129,7 @@ HttpConfig read_http(TomlReader& table, const std::filesystem::path& site_file) 
     table.problem("TLS needs both 'certificate_file' and 'key_file'");
   }
   const bool has_token = table.has("token_file") || !config.tokens.empty();
-  if (!is_loopback(config.address) && (!has_token || !table.has("certificate_file"))) {
+  if (!http::is_this_machine(config.address) && (!has_token || !table.has("certificate_file"))) {
     table.problem_at("listen",
                      fmt::format("'listen' opens {} to other machines; add 'token_file', "
                                  "'certificate_file' and 'key_file', or listen on 127.0.0.1",

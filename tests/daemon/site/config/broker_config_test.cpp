@@ -43,7 +43,7 @@ TEST(BrokerConfig, WhatIsWrongIsNamed) {
       {"url = \"http://localhost\"", "'url' is no address of a broker"},
       {"url = \"mqtt://h\"\nuser = \"u\"\npassword_file = \"p\"",
        "'url' would send the password without encryption; use mqtts"},
-      {"url = \"mqtt://h\"\ntrusted_certificate = \"ca.pem\"",
+      {"url = \"mqtt://h\"\nencrypt = false\ntrusted_certificate = \"ca.pem\"",
        "'trusted_certificate' belongs to an encrypted connection"},
       {"url = \"mqtts://h\"\nkey_file = \"k\"", "'certificate_file' and 'key_file' belong"},
       {"url = \"mqtts://h\"\nclient_id = \"a b\"",
@@ -57,6 +57,32 @@ TEST(BrokerConfig, WhatIsWrongIsNamed) {
   }
   EXPECT_THAT(parse("[fleet]\nurl = \"mqtts://h\"\ntopic = \"x\"").error(),
               Contains(HasSubstr("unknown key 'topic'")));
+}
+
+// Of each kind of destination: what leaves this machine unencrypted is said to be meant.
+TEST(Destinations, BeyondThisMachineTheyAreEncryptedOrSayThatTheyAreNot) {
+  const std::vector<std::pair<std::string, std::string>> all{
+      {"[mqtt]\nurl = \"mqtt", "\"\n"},
+      {"[fleet]\nurl = \"mqtt", "\"\n"},
+      {"[[alerts.webhook]]\nurl = \"http", "/hook\"\n"},
+      {"[[remote_write]]\nprotocol = \"prometheus\"\nurl = \"http", "/write\"\n"}};
+  for (const auto& [begin, end] : all) {
+    const auto with = [&](const std::string& host, const std::string& more = "") {
+      return parse(begin + host + end + more).has_value();
+    };
+    for (const char* here :
+         {"://localhost", "://127.0.0.1:99", "://[::1]:99", "s://h.example.org"}) {
+      EXPECT_TRUE(with(here)) << begin << here;
+    }
+    for (const char* elsewhere : {"://h", "://10.0.0.5", "://127.0.0.1.example.org",
+                                  "://127.example", "://[2001:db8::1]"}) {
+      const auto site = parse(begin + elsewhere + end);
+      ASSERT_FALSE(site.has_value()) << begin << elsewhere;
+      EXPECT_THAT(site.error(), Contains(HasSubstr("or add encrypt = false"))) << begin;
+      EXPECT_TRUE(with(elsewhere, "encrypt = false\n")) << begin << elsewhere;
+      EXPECT_FALSE(with(elsewhere, "encrypt = true\n")) << begin << elsewhere;
+    }
+  }
 }
 
 TEST(BrokerConfig, TwoConnectionsToOneBrokerHaveTwoNames) {
