@@ -5,11 +5,13 @@
 #include <modbus/modbus.h>
 #include <poll.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <random>
 #include <thread>
 
 #include "core/result.hpp"
@@ -100,7 +102,11 @@ microseconds line_time(const SerialPort& port, int characters) {
   return microseconds{static_cast<std::int64_t>(characters) * bits * 1'000'000 / port.baud};
 }
 
-Connection::Connection(Endpoint endpoint) : endpoint_(std::move(endpoint)) {}
+// From anywhere, so that what was on its way to an earlier process is not taken for an answer to
+// this one.
+Connection::Connection(Endpoint endpoint)
+    : endpoint_(std::move(endpoint)),
+      transaction_(static_cast<std::uint16_t>(std::random_device{}())) {}
 Connection::~Connection() = default;
 
 bool Connection::is_open() const { return context_ != nullptr; }
@@ -166,30 +172,66 @@ void Connection::drain() {
   }
 }
 
-ReadResult Connection::receive(const ReadRequest& request) {
+/// The raw interface of libmodbus gives every request transaction 0, so over TCP we send the frame.
+bool Connection::send(std::span<const std::uint8_t> request) {
+  if (is_serial()) {
+    return modbus_send_raw_request(context_->modbus, request.data(),
+                                   static_cast<int>(request.size())) >= 0;
+  }
+  if (++transaction_ == 0) ++transaction_;
+  const auto high = [](std::size_t word) { return static_cast<std::uint8_t>(word >> 8U); };
+  const auto low = [](std::size_t word) { return static_cast<std::uint8_t>(word & 0xFFU); };
+  std::vector<std::uint8_t> frame{high(transaction_),   low(transaction_),  0, 0,
+                                  high(request.size()), low(request.size())};
+  frame.insert(frame.end(), request.begin(), request.end());
+  // The line is idle, so a dozen bytes fit into its buffer.
+  const auto sent =
+      ::send(modbus_get_socket(context_->modbus), frame.data(), frame.size(), MSG_NOSIGNAL);
+  return sent == static_cast<ssize_t>(frame.size());
+}
+
+bool Connection::answers(std::span<const std::uint8_t> frame) {
+  const auto number = static_cast<std::uint16_t>(frame[0] << 8U | frame[1]);
+  if (number == transaction_) return echoes_ = true;
+  return number == 0 && !echoes_;
+}
+
+ReadResult Connection::receive(const ReadRequest& request, milliseconds timeout) {
   std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> frame{};
-  const int received = modbus_receive_confirmation(context_->modbus, frame.data());
-  if (received < 0) {
-    switch (errno) {
-      case ETIMEDOUT:
-        return failed(ReadFault::timeout, "no complete reply before the deadline");
-      case EMBBADCRC:
-        return failed(ReadFault::crc, "the frame's check sum does not fit its bytes");
-      case EMBBADDATA:
-      case EMBMDATA:
-        return failed(ReadFault::mismatch, "a reply longer than any frame may be");
-      default:
-        return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
+  const auto deadline = steady_clock::now() + timeout;
+  for (;;) {
+    const int received = modbus_receive_confirmation(context_->modbus, frame.data());
+    if (received < 0) {
+      switch (errno) {
+        case ETIMEDOUT:
+          return failed(ReadFault::timeout, "no complete reply before the deadline");
+        case EMBBADCRC:
+          return failed(ReadFault::crc, "the frame's check sum does not fit its bytes");
+        case EMBBADDATA:
+        case EMBMDATA:
+          return failed(ReadFault::mismatch, "a reply longer than any frame may be");
+        default:
+          return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
+      }
     }
+    // On a serial line libmodbus returns 0 for a frame of another unit.
+    if (received == 0) return failed(ReadFault::mismatch, "another unit answered");
+    const std::span<const std::uint8_t> bytes{frame.data(), static_cast<std::size_t>(received)};
+    if (!is_serial() && bytes.size() > 2 && !answers(bytes)) {
+      // Late: of a request that was given up. Ours may follow.
+      const auto left = std::chrono::floor<milliseconds>(deadline - steady_clock::now());
+      if (left <= milliseconds{0}) {
+        return failed(ReadFault::timeout, "only the replies to earlier requests came");
+      }
+      set_timeout(context_->modbus, left);
+      continue;
+    }
+    if (unread_bytes(modbus_get_socket(context_->modbus)) != 0) {
+      return failed(ReadFault::mismatch, "more bytes than one reply came");
+    }
+    const auto number = static_cast<std::uint16_t>(frame[0] << 8U | frame[1]);
+    return is_serial() ? check_rtu_reply(bytes, request) : check_tcp_reply(bytes, request, number);
   }
-  // On a serial line libmodbus returns 0 for a frame of another unit.
-  if (received == 0) return failed(ReadFault::mismatch, "another unit answered");
-  if (unread_bytes(modbus_get_socket(context_->modbus)) != 0) {
-    return failed(ReadFault::mismatch, "more bytes than one reply came");
-  }
-  const std::span<const std::uint8_t> bytes{frame.data(), static_cast<std::size_t>(received)};
-  // The raw interface of libmodbus sends transaction 0 with every request.
-  return is_serial() ? check_rtu_reply(bytes, request) : check_tcp_reply(bytes, request, 0);
 }
 
 ReadResult Connection::exchange(const ReadRequest& request, milliseconds timeout) {
@@ -197,10 +239,10 @@ ReadResult Connection::exchange(const ReadRequest& request, milliseconds timeout
   modbus_set_slave(context_->modbus, request.unit);
   set_timeout(context_->modbus, timeout);
   const auto bytes = encode_request(request);
-  if (modbus_send_raw_request(context_->modbus, bytes.data(), bytes.size()) < 0) {
+  if (!send(bytes)) {
     return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
   }
-  ReadResult result = receive(request);
+  ReadResult result = receive(request, timeout);
   if (const auto* serial = std::get_if<SerialPort>(&endpoint_)) {
     line_free_ = steady_clock::now() + line_time(*serial, 7) / 2;
   }
@@ -238,7 +280,8 @@ tl::expected<std::vector<std::uint8_t>, ReadFailure> Connection::receive_pdu(std
   std::vector<std::uint8_t> frame;
   for (;;) {
     const auto whole = TRY(whole_pdu(frame, unit, is_serial()));
-    if (!whole.empty()) return whole;
+    if (!whole.empty() && (is_serial() || answers(frame))) return whole;
+    if (!whole.empty()) frame.clear();  // late, of another request
     const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
     pollfd waiting{descriptor, POLLIN, 0};
     if (left <= milliseconds{0} || ::poll(&waiting, 1, static_cast<int>(left.count())) <= 0) {
@@ -263,7 +306,7 @@ tl::expected<IdentityPart, ReadFailure> Connection::identify_from(std::uint8_t u
   wait_for_silence();
   modbus_set_slave(context_->modbus, unit);
   const auto bytes = encode_identity_request(unit, first_object);
-  if (modbus_send_raw_request(context_->modbus, bytes.data(), bytes.size()) < 0) {
+  if (!send(bytes)) {
     return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
   }
   const auto pdu = receive_pdu(unit, timeout);

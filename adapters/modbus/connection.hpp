@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -80,7 +81,11 @@ class Connection {
   [[nodiscard]] std::optional<ReadFailure> connect();
   [[nodiscard]] ReadResult ask(const ReadRequest& request, milliseconds timeout);
   [[nodiscard]] ReadResult exchange(const ReadRequest& request, milliseconds timeout);
-  [[nodiscard]] ReadResult receive(const ReadRequest& request);
+  /// Sends unit and PDU as a frame of either transport.
+  [[nodiscard]] bool send(std::span<const std::uint8_t> request);
+  [[nodiscard]] ReadResult receive(const ReadRequest& request, milliseconds timeout);
+  /// Whether a TCP frame answers the newest request, and not one before it.
+  [[nodiscard]] bool answers(std::span<const std::uint8_t> frame);
   [[nodiscard]] tl::expected<IdentityPart, ReadFailure> identify_from(std::uint8_t unit,
                                                                       std::uint8_t first_object,
                                                                       milliseconds timeout);
@@ -95,6 +100,8 @@ class Connection {
   std::unique_ptr<Context> context_;
   std::chrono::steady_clock::time_point line_free_{};  ///< Serial: silence ends here.
   std::optional<ReadRequest> timed_out_;               ///< Serial: its reply may still arrive.
+  std::uint16_t transaction_;  ///< TCP: of the newest request; also after another connection.
+  bool echoes_ = false;        ///< TCP: the device has sent one back. Some always send 0.
 };
 
 }  // namespace recald::modbus

@@ -3,7 +3,9 @@
 #include "adapters/modbus/connection.hpp"
 
 #include <gmock/gmock.h>
+
 #include <sys/resource.h>
+#include <set>
 
 #include <future>
 
@@ -96,6 +98,49 @@ TEST(ModbusTcp, LateReplyThenGood) {
   for (std::uint16_t i = 1; i < 4; ++i) expect_value(connection.read(kTwoRegisters, 1s), i);
 }
 
+// A gateway that answers each request with the answer to the one before, whatever connection asks.
+TEST(ModbusTcp, AnAnswerToAnEarlierRequestIsNoValueOnAnyConnection) {
+  Bytes before;
+  ScriptedServer server{[&before](const Bytes& request, int number) {
+    const Bytes late = std::exchange(before, tcp_reply(request, static_cast<std::uint8_t>(number)));
+    return late.empty() ? std::vector<Piece>{} : std::vector<Piece>{{0ms, late}};
+  }};
+  Connection connection = to(server);
+  for (int i = 0; i < 4; ++i)
+    expect_fault(connection.read(kTwoRegisters, 60ms), ReadFault::timeout);
+  Connection another = to(server);
+  expect_fault(another.read(kTwoRegisters, 60ms), ReadFault::timeout);
+}
+
+TEST(ModbusTcp, ALateAnswerIsThrownAwayAndTheOwnOneTaken) {
+  Bytes first;
+  std::vector<std::uint16_t> transactions;
+  ScriptedServer server{[&](const Bytes& request, int number) {
+    transactions.push_back(static_cast<std::uint16_t>(request[0] << 8 | request[1]));
+    const Bytes own = tcp_reply(request, static_cast<std::uint8_t>(number));
+    if (number == 0) first = own;
+    if (number != 1) return std::vector<Piece>{{0ms, own}};
+    Bytes both = first;
+    both.insert(both.end(), own.begin(), own.end());
+    return std::vector<Piece>{{0ms, both}};
+  }};
+  Connection connection = to(server);
+  for (std::uint16_t i = 0; i < 3; ++i) expect_value(connection.read(kTwoRegisters, 1s), i);
+  EXPECT_EQ(server.connections(), 1);
+  EXPECT_EQ(std::set<std::uint16_t>(transactions.begin(), transactions.end()).size(), 3U);
+}
+
+// Some devices send no transaction back.
+TEST(ModbusTcp, ADeviceThatAlwaysSendsTransactionZeroIsRead) {
+  ScriptedServer server{[](const Bytes& request, int number) {
+    Bytes reply = tcp_reply(request, static_cast<std::uint8_t>(number));
+    reply[0] = reply[1] = 0;
+    return std::vector<Piece>{{0ms, reply}};
+  }};
+  Connection connection = to(server);
+  for (std::uint16_t i = 0; i < 3; ++i) expect_value(connection.read(kTwoRegisters, 1s), i);
+}
+
 TEST(ModbusTcp, SplitAndGluedFrames) {
   ScriptedServer server{[](const Bytes& request, int number) {
     const Bytes whole = tcp_reply(request, static_cast<std::uint8_t>(number));
@@ -141,8 +186,8 @@ TEST(ModbusTcp, TruncatedEverywhere) {
 }
 
 TEST(ModbusTcp, WrongFieldsCostTheConnectionAndNothingElse) {
-  const std::vector<std::pair<std::size_t, std::uint8_t>> changes{{1, 0x77}, {2, 0x01}, {5, 0x06},
-                                                                  {5, 0x28}, {6, 99},   {7, 0x04}};
+  const std::vector<std::pair<std::size_t, std::uint8_t>> changes{
+      {2, 0x01}, {5, 0x06}, {5, 0x28}, {6, 99}, {7, 0x04}};  // of another transaction: late
   ScriptedServer server{[&](const Bytes& request, int number) {
     Bytes reply = tcp_reply(request, 2);
     if (number % 2 == 0) {
