@@ -146,9 +146,12 @@ void Forwarding::begin_again_in_a_minute() {
 }
 
 void Forwarding::connect() {
-  auto opened =
-      open_broker(site_->mqtt->broker, session_of(*site_), on_loop(&Forwarding::on_message),
-                  on_loop(&Forwarding::on_broker_state));
+  const auto hear = [messages = messages_,
+                     read = on_loop(&Forwarding::read_messages)](const mqtt::Message& message) {
+    if (messages->add(message)) read();
+  };
+  auto opened = open_broker(site_->mqtt->broker, session_of(*site_), hear,
+                            on_loop(&Forwarding::on_broker_state));
   if (!opened) {
     on_broker_state(false, opened.error().message);
     return begin_again_in_a_minute();
@@ -157,8 +160,11 @@ void Forwarding::connect() {
 }
 
 void Forwarding::connect_to_fleet() {
-  auto opened = RecordLink::open(*site_->fleet, site_->id, on_loop(&Forwarding::on_record),
-                                 on_loop(&Forwarding::on_fleet_state));
+  const auto sign = [is_due = is_sign_due_, on_record = on_loop(&Forwarding::on_record)] {
+    if (!is_due->exchange(true)) on_record();
+  };
+  auto opened =
+      RecordLink::open(*site_->fleet, site_->id, sign, on_loop(&Forwarding::on_fleet_state));
   if (!opened) {
     on_fleet_state(false, opened.error().message);
     return begin_again_in_a_minute();
@@ -166,7 +172,22 @@ void Forwarding::connect_to_fleet() {
   fleet_ = std::move(*opened);
 }
 
-void Forwarding::on_message(const mqtt::Message& message) {
+void Forwarding::read_messages() {
+  for (const mqtt::Message& message : messages_->take()) read(message);
+  const std::int64_t dropped = messages_->dropped();
+  if (dropped == dropped_ || !site_->mqtt) return;
+  notify({.time = {},
+          .severity = Severity::warning,
+          .kind = "messages_dropped",
+          .subject = broker_words(*site_->mqtt),
+          .text = fmt::format("{} messages of the MQTT broker went unread, as newer ones of their "
+                              "topics came faster than they can be read",
+                              dropped - dropped_),
+          .is_counted = true});
+  dropped_ = dropped;
+}
+
+void Forwarding::read(const mqtt::Message& message) {
   const MeterMessage parsed = parse_meter_message(*site_, message.topic, message.payload,
                                                   message.is_retained, ports_.loop.now().instant());
   for (const MeterValue& value : parsed.values) on_value_(value);
@@ -193,6 +214,7 @@ void Forwarding::on_broker_state(bool is_connected, const std::string& why) {
 }
 
 void Forwarding::on_record() {
+  is_sign_due_->store(false);
   for (const auto& forwarder : forwarders_) {
     if (forwarder->destination().id == kFleet) forwarder->try_now();
   }

@@ -2,7 +2,9 @@
 /// stored, and takes what a broker says of the site's meters.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -19,6 +21,7 @@
 #include "daemon/gateway/forward/forwarder.hpp"
 #include "daemon/gateway/forward/open_broker.hpp"
 #include "daemon/gateway/forward/record_link.hpp"
+#include "daemon/gateway/forward/waiting_messages.hpp"
 #include "daemon/gateway/ingest/meter_message.hpp"
 #include "daemon/site/config/site_config.hpp"
 
@@ -62,7 +65,8 @@ class Forwarding {
   void connect_to_fleet();
   void keep_outbox();
   void add_forwarder(Destination destination, std::unique_ptr<Sink> sink);
-  void on_message(const mqtt::Message& message);
+  void read_messages();
+  void read(const mqtt::Message& message);
   void on_broker_state(bool is_connected, const std::string& why);
   void on_record();
   void on_fleet_state(bool is_connected, const std::string& why);
@@ -86,6 +90,10 @@ class Forwarding {
   bool is_started_ = false;
   bool is_again_due_ = false;
   BrokerNews broker_news_, fleet_news_;
+  /// Shared with the broker's thread.
+  std::shared_ptr<WaitingMessages> messages_ = std::make_shared<WaitingMessages>();
+  std::shared_ptr<std::atomic<bool>> is_sign_due_ = std::make_shared<std::atomic<bool>>(false);
+  std::int64_t dropped_ = 0;                                     ///< Of the messages, as said.
   std::map<std::string, std::chrono::milliseconds> refused_at_;  ///< By meter, monotonic.
   std::shared_ptr<BrokerLink> link_;
   std::unique_ptr<BrokerState> state_;
