@@ -23,24 +23,6 @@ constexpr std::size_t kDryBulb = 0;  // index in kWeatherVariables
 constexpr std::string_view kDryBulbF = "dry_bulb_F";
 constexpr seconds kStepToInfer{1800};
 
-/// Values that can occur on the ground, in order of kWeatherVariables. Slightly excessive values,
-/// as sensors report (105 % humidity, −4 W/m2 at night), are clipped; larger ones are dropped.
-struct Range {
-  double low;
-  double high;
-  double tolerated;
-};
-constexpr std::array<Range, kWeatherVariables.size()> kRanges{{
-    {-90.0, 60.0, 0.0},
-    {0.0, 100.0, 10.0},
-    {0.0, 110.0, 0.0},
-    {0.0, 360.0, 0.0},
-    {0.0, 1600.0, 30.0},
-    {0.0, 1400.0, 30.0},
-    {0.0, 1200.0, 30.0},
-    {50e3, 110e3, 0.0},
-}};
-
 /// The file's column for each variable; absent if the file lacks it.
 using WeatherColumns = std::array<std::optional<std::size_t>, kWeatherVariables.size()>;
 
@@ -146,12 +128,12 @@ class WeatherReader {
       return false;
     }
     if (is_fahrenheit) value = (*value - 32.0) / 1.8;
-    const Range& range = kRanges[variable];
-    if (*value < range.low - range.tolerated || *value > range.high + range.tolerated) {
+    const weather::WeatherVariable& range = kWeatherVariables[variable];
+    if (!range.is_possible(*value)) {
       bad(line, name + " " + std::string{text} + " is impossible; taken as blank");
       return true;
     }
-    values.*kWeatherVariables[variable].member = std::clamp(*value, range.low, range.high);
+    values.*range.member = std::clamp(*value, range.low, range.high);
     return true;
   }
 

@@ -15,9 +15,11 @@ using csv::FieldSplitter;
 using csv::in_quotes;
 using metering::Instant;
 using std::chrono::seconds;
+using weather::kWeatherVariables;
 using weather::ValuesStand;
 using weather::WeatherHour;
 using weather::WeatherRecord;
+using weather::WeatherVariable;
 
 constexpr std::array<std::string_view, 8> kHeaderLines{"LOCATION",
                                                        "DESIGN CONDITIONS",
@@ -31,22 +33,25 @@ constexpr std::size_t kFieldsNeeded = 22;  // up to wind speed; the rest is not 
 constexpr int kLeapYear = 2000;
 constexpr int kPlainYear = 2001;
 
-/// A field of a row: its place, where its value goes, and the code from which on it is missing.
+/// A field of a row: its place, its variable, and the code from which on it is missing.
 struct Field {
   std::size_t place;
   double missing_from;
-  double WeatherHour::*member;
+  std::size_t variable;  ///< Of `kWeatherVariables`.
 };
-constexpr std::array<Field, 8> kFields{{
-    {6, 99.9, &WeatherHour::dry_bulb_C},
-    {8, 999.0, &WeatherHour::rel_humidity_pct},
-    {9, 999999.0, &WeatherHour::pressure_Pa},
-    {13, 9999.0, &WeatherHour::ghi_W_m2},
-    {14, 9999.0, &WeatherHour::dni_W_m2},
-    {15, 9999.0, &WeatherHour::dhi_W_m2},
-    {20, 999.0, &WeatherHour::wind_dir_deg},
-    {21, 999.0, &WeatherHour::wind_speed_m_s},
+constexpr std::array<Field, kWeatherVariables.size()> kFields{{
+    {6, 99.9, 0},
+    {8, 999.0, 1},
+    {21, 999.0, 2},
+    {20, 999.0, 3},
+    {13, 9999.0, 4},
+    {14, 9999.0, 5},
+    {15, 9999.0, 6},
+    {9, 999999.0, 7},
 }};
+constexpr std::size_t kHumidity = 1;
+/// More hours than these are no outliers, but a column in another unit or of another meaning.
+constexpr double kImpossibleShareMax = 0.05;
 
 std::string at_line(std::string_view name, std::uint64_t line) {
   return in_quotes(name) + " line " + std::to_string(line) + ": ";
@@ -94,10 +99,16 @@ class EpwReader {
     TRY(read_headers());
     TRY(read_rows());
     if (next_.month <= 12) return ends_early();
+    TRY(check_possible());
     return lay_on(year);
   }
 
  private:
+  struct Impossible {
+    int hours = 0;
+    std::string first = {};
+    std::uint64_t line = 0;
+  };
   struct Row {
     YearHour at;
     WeatherHour values;
@@ -202,14 +213,49 @@ class EpwReader {
                        at_line(name_, line_.number) + "field " + std::to_string(field.place + 1) +
                            " " + in_quotes(fields_[field.place]) + " is not a number");
       }
-      if (*value < field.missing_from) row.values.*field.member = *value;
-    }
-    if (row.values.rel_humidity_pct > 100.0) {
-      row.values.rel_humidity_pct = 100.0;
-      ++weather_.humidity_clipped;
+      if (*value < field.missing_from) put(field, *value, row.values);
     }
     rows_.push_back(row);
     return true;
+  }
+
+  void put(const Field& field, double value, WeatherHour& values) {
+    const WeatherVariable& variable = kWeatherVariables[field.variable];
+    Impossible& impossible = impossible_[field.variable];
+    if (!variable.is_possible(value)) {
+      if (impossible.hours++ == 0) {
+        impossible.first = std::string{csv::trimmed(fields_[field.place])};
+        impossible.line = line_.number;
+      }
+      return;
+    }
+    if (field.variable == kHumidity && value > variable.high) ++weather_.humidity_clipped;
+    values.*variable.member = std::clamp(value, variable.low, variable.high);
+  }
+
+  /// Values that cannot occur are absent; where there are many, nothing of the file is believed.
+  Result<void> check_possible() {
+    for (std::size_t v = 0; v < impossible_.size(); ++v) {
+      const Impossible& one = impossible_[v];
+      if (one.hours == 0) continue;
+      const WeatherVariable& variable = kWeatherVariables[v];
+      std::array<char, 200> words{};
+      std::snprintf(
+          words.data(), words.size(),
+          "%.*s lies between %g and %g, and %d of %zu hours have other values, the first ",
+          static_cast<int>(variable.name.size()), variable.name.data(), variable.low, variable.high,
+          one.hours, rows_.size());
+      const std::string sentence =
+          words.data() + in_quotes(one.first) + " on line " + std::to_string(one.line);
+      if (one.hours > kImpossibleShareMax * static_cast<double>(rows_.size())) {
+        return failure(ErrorCode::invalid_value,
+                       in_quotes(name_) + ": " + sentence +
+                           "; is the column in another unit (°F, kPa)? What was not measured has a "
+                           "code in EPW, such as 99.9 or 999999");
+      }
+      weather_.notes.push_back(sentence + "; they are taken as not measured");
+    }
+    return {};
   }
 
   [[nodiscard]] tl::unexpected<Error> ends_early() const {
@@ -278,6 +324,7 @@ class EpwReader {
   FieldSplitter fields_;
   EpwWeather weather_{};
   std::vector<Row> rows_;
+  std::array<Impossible, kWeatherVariables.size()> impossible_{};
   YearHour next_{1, 1, 1};
   std::optional<int> first_year_;
   bool several_years_ = false;

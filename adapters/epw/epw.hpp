@@ -42,7 +42,9 @@ struct EpwWeather {
 ///              typical year made of several, that of its first row. In a leap year a file without
 ///              29 February repeats the 28th; otherwise a 29 February is dropped. A note says so.
 /// @param values  What temperature, humidity, wind and pressure are in a file that differs.
-/// @return the weather, or not_found, io_failed, malformed (a header line, a field, rows
+/// Values that cannot occur on the ground are absent, and noted.
+/// @return the weather, or not_found, io_failed, invalid_value (a variable that has such values in
+///         more than one hour of twenty), malformed (a header line, a field, rows
 ///         out of order), not_enough_data (a file that ends early: the message names the
 ///         first missing hour).
 /// @see EnergyPlus, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary".

@@ -28,20 +28,29 @@ struct WeatherHour {
   double pressure_Pa = kAbsent;   ///< At the station, not reduced to sea level.
 };
 
-/// The columns of `WeatherHour`, for code that treats them alike.
+/// The columns of `WeatherHour`, for code that treats them alike, with the values that can occur on
+/// the ground. What files have slightly beyond (105 % humidity, −4 W/m2 at night) is set to the
+/// limit; more than `tolerated` beyond, it is no value.
 struct WeatherVariable {
   std::string_view name;
   double WeatherHour::*member;
+  double low;
+  double high;
+  double tolerated = 0.0;
+
+  [[nodiscard]] constexpr bool is_possible(double value) const {
+    return low - tolerated <= value && value <= high + tolerated;
+  }
 };
 inline constexpr std::array<WeatherVariable, 8> kWeatherVariables{{
-    {"dry_bulb_C", &WeatherHour::dry_bulb_C},
-    {"rel_humidity_pct", &WeatherHour::rel_humidity_pct},
-    {"wind_speed_m_s", &WeatherHour::wind_speed_m_s},
-    {"wind_dir_deg", &WeatherHour::wind_dir_deg},
-    {"ghi_W_m2", &WeatherHour::ghi_W_m2},
-    {"dni_W_m2", &WeatherHour::dni_W_m2},
-    {"dhi_W_m2", &WeatherHour::dhi_W_m2},
-    {"pressure_Pa", &WeatherHour::pressure_Pa},
+    {"dry_bulb_C", &WeatherHour::dry_bulb_C, -90.0, 60.0},
+    {"rel_humidity_pct", &WeatherHour::rel_humidity_pct, 0.0, 100.0, 10.0},
+    {"wind_speed_m_s", &WeatherHour::wind_speed_m_s, 0.0, 110.0},
+    {"wind_dir_deg", &WeatherHour::wind_dir_deg, 0.0, 360.0},
+    {"ghi_W_m2", &WeatherHour::ghi_W_m2, 0.0, 1600.0, 30.0},
+    {"dni_W_m2", &WeatherHour::dni_W_m2, 0.0, 1400.0, 30.0},
+    {"dhi_W_m2", &WeatherHour::dhi_W_m2, 0.0, 1200.0, 30.0},
+    {"pressure_Pa", &WeatherHour::pressure_Pa, 50e3, 110e3},
 }};
 
 /// Consecutive hours on the UTC hour.

@@ -139,6 +139,57 @@ std::string problem(const std::string& text, std::optional<int> wanted = {}) {
   return weather ? std::string{"accepted"} : weather.error().message;
 }
 
+/// A year in which one field of some hours is another text. @param every  Of so many hours one.
+std::string year_with(std::size_t place, const std::string& value, int every) {
+  std::string text;
+  int hour = 0;
+  const std::string plain = rows(false, in_2013);
+  for (std::size_t begin = 0; begin < plain.size();) {
+    const std::size_t end = plain.find('\n', begin);
+    std::string line = plain.substr(begin, end - begin);
+    if (hour++ % every == 0) {
+      std::size_t at = 0;
+      for (std::size_t field = 0; field < place; ++field) at = line.find(',', at) + 1;
+      line.replace(at, line.find(',', at) - at, value);
+    }
+    text += line + "\n";
+    begin = end + 1;
+  }
+  return kHeader + text;
+}
+
+// Another unit, another column, a sensor that is broken: of each variable, below and above.
+TEST(Epw, WhatCannotBeMeasuredOnTheGroundIsNoValue) {
+  const std::vector<
+      std::tuple<std::size_t, const char*, double weather::WeatherHour::*, const char*>>
+      cases{{6, "99.8", &weather::WeatherHour::dry_bulb_C, "dry_bulb_C"},
+            {6, "-273.16", &weather::WeatherHour::dry_bulb_C, "dry_bulb_C"},
+            {8, "-50", &weather::WeatherHour::rel_humidity_pct, "rel_humidity_pct"},
+            {8, "180", &weather::WeatherHour::rel_humidity_pct, "rel_humidity_pct"},
+            {9, "0", &weather::WeatherHour::pressure_Pa, "pressure_Pa"},
+            {9, "96.5", &weather::WeatherHour::pressure_Pa, "pressure_Pa"},
+            {13, "-999", &weather::WeatherHour::ghi_W_m2, "ghi_W_m2"},
+            {14, "5000", &weather::WeatherHour::dni_W_m2, "dni_W_m2"},
+            {15, "-1e9", &weather::WeatherHour::dhi_W_m2, "dhi_W_m2"},
+            {20, "400", &weather::WeatherHour::wind_dir_deg, "wind_dir_deg"},
+            {21, "-1e9", &weather::WeatherHour::wind_speed_m_s, "wind_speed_m_s"}};
+  for (const auto& [place, value, member, name] : cases) {
+    const std::string all = problem(year_with(place, value, 1));
+    EXPECT_NE(all.find(std::string{name} + " lies between"), std::string::npos) << all;
+    EXPECT_NE(all.find("8760 of 8760 hours"), std::string::npos) << all;
+    EXPECT_NE(problem(year_with(place, value, 19)).find("462 of 8760"), std::string::npos) << name;
+    const auto few = read_epw_text(year_with(place, value, 21), "a.epw");
+    ASSERT_TRUE(few.has_value()) << few.error().message;
+    EXPECT_TRUE(std::isnan(few->series.hours[0].*member)) << name;
+    ASSERT_EQ(few->notes.size(), 1U);
+    EXPECT_NE(
+        few->notes[0].find("418 of 8760 hours have other values, the first '" + std::string{value} +
+                           "' on line 9; they are taken as not measured"),
+        std::string::npos)
+        << few->notes[0];
+  }
+}
+
 TEST(EpwBadInput, EachHasItsSentence) {
   const std::string good = rows(false, in_2013);
   EXPECT_EQ(read_epw("/no/such.epw").error().message, "EPW file '/no/such.epw' does not exist");
