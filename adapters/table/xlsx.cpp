@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/table/archive.hpp"
@@ -16,7 +17,8 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr std::size_t kPartMax = 16u << 20;    // largest part that is read as a whole, in bytes
+constexpr std::size_t kPartMax = 16u << 20;  // largest part that is read as a whole, in bytes
+constexpr std::size_t kSheetsMax = 1000;
 constexpr std::size_t kRowMax = 4u << 20;      // of one row
 constexpr std::size_t kSharedMax = 64u << 20;  // of all shared texts
 
@@ -26,12 +28,17 @@ bool is_named(const pugi::xml_node& node, std::string_view name) {
 
 /// Appends all text below a node, except phonetic guides.
 void add_text(const pugi::xml_node& node, std::string& text) {
-  for (const pugi::xml_node& one : node.children()) {
-    if (is_named(one, "t")) {
-      text += one.text().get();
-    } else if (!is_named(one, "rPh")) {
-      add_text(one, text);
+  // Without recursion: a file chooses how deep it goes.
+  pugi::xml_node one = node.first_child();
+  while (one) {
+    const bool is_text = is_named(one, "t");
+    if (is_text) text += one.text().get();
+    if (!is_text && !is_named(one, "rPh") && one.first_child()) {
+      one = one.first_child();
+      continue;
     }
+    while (one != node && !one.next_sibling()) one = one.parent();
+    one = one == node ? pugi::xml_node{} : one.next_sibling();
   }
 }
 
@@ -83,13 +90,19 @@ Result<Workbook> read_workbook(const Archive& archive) {
   const pugi::xml_node root = document.document_element();
   const std::string_view epoch = attribute(child_named(root, "workbookPr"), "date1904");
   book.counts_from_1904 = epoch == "1" || epoch == "true";
+  std::map<std::string_view, std::string> entries;
+  for (const pugi::xml_node& relation : relations.document_element().children()) {
+    entries.emplace(relation.attribute("Id").value(),
+                    entry_of(relation.attribute("Target").value()));
+  }
   for (const pugi::xml_node& sheet : child_named(root, "sheets").children()) {
     const std::string_view id = attribute(sheet, "id");
-    for (const pugi::xml_node& relation : relations.document_element().children()) {
-      if (std::string_view{relation.attribute("Id").value()} != id || id.empty()) continue;
-      book.sheets.push_back(
-          {std::string{attribute(sheet, "name")}, entry_of(relation.attribute("Target").value())});
+    const auto entry = id.empty() ? entries.end() : entries.find(id);
+    if (entry == entries.end()) continue;
+    if (book.sheets.size() == kSheetsMax) {
+      return failure(ErrorCode::malformed, "the workbook has more than 1000 sheets");
     }
+    book.sheets.push_back({std::string{attribute(sheet, "name")}, entry->second});
   }
   return book;
 }
@@ -136,14 +149,15 @@ Result<std::vector<Kind>> read_styles(const Archive& archive) {
   pugi::xml_document document;
   TRY(parse_part(archive, "xl/styles.xml", document));
   const pugi::xml_node root = document.document_element();
+  std::map<int, Kind> formats;
+  for (const pugi::xml_node& format : child_named(root, "numFmts").children()) {
+    const auto id = whole_number(attribute(format, "numFmtId"));
+    if (id) formats[static_cast<int>(*id)] = kind_of_code(attribute(format, "formatCode"));
+  }
   for (const pugi::xml_node& style : child_named(root, "cellXfs").children()) {
     const int id = static_cast<int>(whole_number(attribute(style, "numFmtId")).value_or(0));
-    Kind kind = kind_of_id(id);
-    for (const pugi::xml_node& format : child_named(root, "numFmts").children()) {
-      if (whole_number(attribute(format, "numFmtId")) != id) continue;
-      kind = kind_of_code(attribute(format, "formatCode"));
-    }
-    kinds.push_back(kind);
+    const auto format = formats.find(id);
+    kinds.push_back(format == formats.end() ? kind_of_id(id) : format->second);
   }
   return kinds;
 }

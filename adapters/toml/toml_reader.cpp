@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -22,7 +23,59 @@ std::string limits_of(NumberRange range) {
   return std::isfinite(range.min) ? fmt::format("at least {}", range.min) : "a finite number";
 }
 
+/// Where a text or a comment that begins at `at` ends.
+std::size_t end_of_quoted(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  if (quote == '#') return std::min(text.find('\n', at), text.size());
+  const std::string triple(3, quote);
+  const bool is_long = text.substr(at).starts_with(triple);
+  const std::string_view close =
+      is_long ? std::string_view{triple} : std::string_view{triple}.substr(2);
+  for (std::size_t i = at + close.size(); i < text.size(); ++i) {
+    if (!is_long && text[i] == '\n') return i;
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text.substr(i).starts_with(close)) {
+      return i + close.size();
+    }
+  }
+  return text.size();
+}
+
+/// The line of the first key with more parts than are read; 0: none has.
+std::size_t line_of_deep_key(std::string_view text) {
+  constexpr int kDotsMax = 100;
+  std::size_t line = 1;
+  int dots = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (c == '"' || c == '\'' || c == '#') {
+      const std::size_t end = end_of_quoted(text, i);
+      line += static_cast<std::size_t>(std::count(text.begin() + static_cast<std::ptrdiff_t>(i),
+                                                  text.begin() + static_cast<std::ptrdiff_t>(end),
+                                                  '\n'));
+      i = std::max(end, i + 1);
+      continue;
+    }
+    const bool is_of_key = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' ||
+                           c == '-' || c == ' ' || c == '\t';
+    if (c == '.' && ++dots > kDotsMax) return line;
+    if (c != '.' && !is_of_key) dots = 0;
+    if (c == '\n') ++line;
+    ++i;
+  }
+  return 0;
+}
+
 }  // namespace
+
+toml::table parse_toml(std::string_view text, std::string_view source) {
+  if (const std::size_t line = line_of_deep_key(text); line > 0) {
+    const toml::source_position at{static_cast<toml::source_index>(line), 1};
+    throw toml::parse_error{"a key has more than 100 parts", toml::source_region{at, at, {}}};
+  }
+  return toml::parse(text, source);
+}
 
 std::string syntax_problem(std::string_view file, const toml::parse_error& error) {
   return printable(fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line,
@@ -38,7 +91,7 @@ Result<toml::table> read_toml(const std::filesystem::path& file, std::string_vie
   std::ostringstream text;
   text << stream.rdbuf();
   try {
-    return toml::parse(text.str());
+    return parse_toml(text.str());
   } catch (const toml::parse_error& error) {
     return failure(ErrorCode::malformed, syntax_problem(file.string(), error));
   }

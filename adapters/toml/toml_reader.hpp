@@ -118,6 +118,11 @@ class TomlReader {
   std::vector<std::string> asked_;
 };
 
+/// As toml::parse, which recurses over the parts of a key: one of more than a hundred is refused.
+/// @param source  The file's name, for messages.
+/// @throws toml::parse_error
+[[nodiscard]] toml::table parse_toml(std::string_view text, std::string_view source = {});
+
 /// @param what  "scenario": what the file is, for people.
 /// @return not_found, or malformed with the line
 [[nodiscard]] Result<toml::table> read_toml(const std::filesystem::path& file,

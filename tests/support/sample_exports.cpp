@@ -1,12 +1,12 @@
 #include "tests/support/sample_exports.hpp"
 
-#include <zip.h>
-
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <stdexcept>
+
+#include "tests/support/zip_file.hpp"
 
 namespace recald::testing {
 namespace {
@@ -50,13 +50,6 @@ std::string sheet_of(const std::vector<std::string>& header, const std::vector<W
     xml += "</row>";
   }
   return xml + "</sheetData></worksheet>";
-}
-
-void add_entry(zip_t* archive, const char* name, const std::string& text) {
-  zip_source_t* source = zip_source_buffer(archive, text.data(), text.size(), 0);
-  if (source == nullptr || zip_file_add(archive, name, source, ZIP_FL_OVERWRITE) < 0) {
-    throw std::runtime_error("cannot write the workbook");
-  }
 }
 
 }  // namespace
@@ -105,9 +98,6 @@ double spreadsheet_day(const metering::LocalCalendar& calendar, Instant t) {
 
 void write_workbook(const std::filesystem::path& file, const std::vector<std::string>& header,
                     const std::vector<WorkbookRow>& rows) {
-  int code = 0;
-  zip_t* archive = zip_open(file.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code);
-  if (archive == nullptr) throw std::runtime_error("cannot make the workbook");
   const std::string ns = "xmlns=\"http://schemas.openxmlformats.org/spreadsheetml/2006/main\"";
   const std::string book =
       "<workbook " + ns +
@@ -125,12 +115,11 @@ void write_workbook(const std::filesystem::path& file, const std::vector<std::st
   for (const std::string& text : header) shared += "<si><t>" + text + "</t></si>";
   shared += "</sst>";
   const std::string sheet = sheet_of(header, rows);
-  add_entry(archive, "xl/workbook.xml", book);
-  add_entry(archive, "xl/_rels/workbook.xml.rels", relations);
-  add_entry(archive, "xl/styles.xml", styles);
-  add_entry(archive, "xl/sharedStrings.xml", shared);
-  add_entry(archive, "xl/worksheets/sheet1.xml", sheet);
-  if (zip_close(archive) != 0) throw std::runtime_error("cannot close the workbook");
+  write_zip(file, {{"xl/workbook.xml", book},
+                   {"xl/_rels/workbook.xml.rels", relations},
+                   {"xl/styles.xml", styles},
+                   {"xl/sharedStrings.xml", shared},
+                   {"xl/worksheets/sheet1.xml", sheet}});
 }
 
 }  // namespace recald::testing

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "adapters/system/files/read_file.hpp"
 #include "adapters/system/files/regular_file.hpp"
 #include "core/text/nearest.hpp"
 #include "core/text/printable.hpp"
@@ -45,8 +46,10 @@ tl::expected<HyperPrior, Problems> load_hyper_prior(const std::filesystem::path&
   if (const auto is_file = system::require_file(file, "hyper-prior file"); !is_file) {
     return tl::unexpected(Problems{is_file.error().message});
   }
+  const auto text = system::read_file(file);
+  if (!text) return tl::unexpected(Problems{text.error().message});
   try {
-    const toml::table table = toml::parse_file(file.string());
+    const toml::table table = parse_toml(*text, file.string());
     TomlReader root{table, file.filename().string(), "", problems};
     const GammaPrior discrepancy = read_gamma(root, "discrepancy");
     const GammaPrior error = read_gamma(root, "error");

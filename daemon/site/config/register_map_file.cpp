@@ -324,7 +324,7 @@ tl::expected<RegisterMapFile, Problems> parse_register_map(std::string_view text
   const std::string file_name = name.ends_with(".toml") ? name : name + ".toml";
   RegisterMapFile file;
   try {
-    const toml::table root = toml::parse(text, file_name);
+    const toml::table root = parse_toml(text, file_name);
     file = read_map(TomlReader{root, file_name, "", problems}, name);
   } catch (const toml::parse_error& error) {
     problems.push_back(syntax_problem(file_name, error));

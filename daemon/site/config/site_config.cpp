@@ -838,7 +838,7 @@ tl::expected<SiteConfig, std::vector<std::string>> parse_site(std::string_view t
   SiteConfig config;
   config.file = file;
   try {
-    const toml::table root = toml::parse(text, name);
+    const toml::table root = parse_toml(text, name);
     read_root(TomlReader{root, name, "", problems}, config);
   } catch (const toml::parse_error& error) {
     problems.push_back(syntax_problem(name, error));

@@ -129,7 +129,7 @@ tl::expected<std::vector<Measure>, Problems> parse_measures(std::string_view tex
   Problems problems;
   std::vector<Measure> measures;
   try {
-    const toml::table table = toml::parse(text, name);
+    const toml::table table = parse_toml(text, name);
     TomlReader root{table, name, "", problems};
     std::set<std::string> names;
     for (TomlReader& one : root.tables("measure")) {

@@ -1,5 +1,6 @@
 #include "adapters/toml/toml_reader.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,6 +27,40 @@ TEST(ParseDuration, RefusesAnythingElse) {
                            "1w", "2000000000s", "99999999999999999999h"}) {
     EXPECT_EQ(parse_duration(text), std::nullopt) << text;
   }
+}
+
+// Its parts are tables in each other, which the parser and whoever lets them go recurse over.
+TEST(ParseToml, AKeyMayHaveAHundredParts) {
+  const auto dotted = [](int parts) {
+    std::string key = "a";
+    for (int i = 1; i < parts; ++i) key += i % 3 == 0 ? " . \"b.c\"" : ".d";
+    return key;
+  };
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      (void)parse_toml(text, "a.toml");
+      return "read";
+    } catch (const toml::parse_error& error) {
+      return syntax_problem("a.toml", error);
+    }
+  };
+  EXPECT_EQ(refusal("x = 1\n" + dotted(101) + " = 1\n"), "read");
+  for (const int parts : {102, 1'000, 100'000}) {
+    for (const char* form : {"{} = 1\n", "[{}]\n", "[[{}]]\n", "y = {{ {} = 1 }}\n"}) {
+      EXPECT_EQ(refusal("x = 1\n# a comment\n" + fmt::format(fmt::runtime(form), dotted(parts))),
+                "a.toml:3: not valid TOML: a key has more than 100 parts")
+          << parts << form;
+    }
+  }
+  const std::string dots(100'000, '.');
+  for (const std::string& fine :
+       {"x = \"" + dots + "\"\n", "x = '" + dots + "'\n", "# " + dots + "\nx = 1\n",
+        "x = \"\"\"\n" + dots + "\n\"\"\"\n", "x = '''" + dots + "'''\n", "x = \"a\\\"" + dots + "\"\n"}) {
+    EXPECT_EQ(refusal(fine), "read") << fine.substr(0, 20);
+  }
+  std::string numbers = "x = [";
+  for (int i = 0; i < 10'000; ++i) numbers += "1.5, ";
+  EXPECT_EQ(refusal(numbers + "2.5]\n"), "read");
 }
 
 /// A text as one table, and what reading it found wrong.
