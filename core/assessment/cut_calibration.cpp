@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "core/absent.hpp"
 #include "core/calibration/cut_sampling.hpp"
+#include "core/calibration/posterior/emulator.hpp"
 #include "core/calibration/samplers/samplers.hpp"
 #include "core/model/model_adaptors.hpp"
 
@@ -108,14 +110,37 @@ void take_over(CutDraws cut, const CutOptions& how, const CalibrationOptions& op
   c.sampling.chains = std::move(cut.statistics);
 }
 
+/// What is drawn from and predicted with: the model, or a polynomial in θ and η in its place.
+struct CutModel {
+  std::optional<calibration::Emulator> emulator = {};
+  Eigen::VectorXd error_sd = {};  ///< Of the polynomial.
+
+  [[nodiscard]] const MonthlyModel& in_place_of(const MonthlyModel& model) const {
+    return emulator ? static_cast<const MonthlyModel&>(emulator->model) : model;
+  }
+};
+
+CutModel cut_model(const MonthlyModel& model, const calibration::DesignRuns& design,
+                   const CalibrationOptions& options) {
+  CutModel cut;
+  if (!options.emulate || model.has_jacobian()) return cut;
+  auto emulator =
+      calibration::emulate(design.theta, design.outputs, model.output_count(), model.month_count());
+  if (!emulator) return cut;  // too few runs for this many parameters
+  cut.error_sd = emulator->error_sd;
+  cut.emulator = std::move(*emulator);
+  return cut;
+}
+
 /// @param problem  Of θ alone, without the outputs that were set aside; `all` has η too.
-Result<void> predict_with_eta(const MonthlyModel& model, const CalibrationProblem& all,
-                              const CalibrationProblem& problem, const RunContext& context,
-                              AssessedCalibration& result) {
+Result<void> predict_with_eta(const MonthlyModel& model, const CutModel& cut,
+                              const CalibrationProblem& all, const CalibrationProblem& problem,
+                              const RunContext& context, AssessedCalibration& result) {
   Calibration& c = result.calibration;
-  const auto posterior = TRY(calibration::Posterior::make(
-      model, all.parameters, calibration::normalise_problem(problem, c.normalisation),
-      c.hyper_prior));
+  auto data = calibration::normalise_problem(problem, c.normalisation);
+  if (cut.emulator) calibration::add_emulator_error(cut.error_sd, model.month_count(), data);
+  const auto posterior = TRY(calibration::Posterior::make(cut.in_place_of(model), all.parameters,
+                                                          std::move(data), c.hyper_prior));
   c.predictions = TRY(calibration::predict_points(posterior, c.chains, context));
   return {};
 }
@@ -148,6 +173,7 @@ Result<Eigen::MatrixXd> taught_by_months(const MonthlyModel& model,
 }
 
 Result<void> calibrate_given_eta(const MonthlyModel& model, const CalibrationProblem& all,
+                                 const calibration::DesignRuns& joint_design,
                                  const Eigen::MatrixXd& eta, const CalibrationOptions& options,
                                  bool prior_sensitivity, const RunContext& context,
                                  AssessedCalibration& result) {
@@ -165,11 +191,13 @@ Result<void> calibrate_given_eta(const MonthlyModel& model, const CalibrationPro
     return done;
   }
   const CutOptions how = cut_options(options.sampling, eta.rows());
-  auto cut =
-      TRY(calibration::sample_given_eta(model, result.calibration, problem, eta, how, context));
-  take_over(std::move(cut), how, options, context, result);
+  const CutModel cut = cut_model(model, joint_design, options);
+  auto draws = TRY(calibration::sample_given_eta(cut.in_place_of(model), cut.error_sd,
+                                                 result.calibration, problem, eta, how, context));
+  take_over(std::move(draws), how, options, context, result);
+  if (cut.emulator) result.calibration.emulator_error_sd = cut.error_sd;
   if (!options.predictive) return {};
-  return predict_with_eta(model, all, problem, context, result);
+  return predict_with_eta(model, cut, all, problem, context, result);
 }
 
 }  // namespace recald::assessment

@@ -27,10 +27,13 @@ namespace recald::assessment {
 /// `result.calibration`.
 /// @param model    θ (q), then η (r).
 /// @param problem  Of θ and η.
+/// @param design   Runs over the priors of θ and η. With `options.emulate` the draws at each η, and
+///                 the predictions, are of a polynomial fitted to them where they suffice.
 /// @param eta      (n x r)
 [[nodiscard]] Result<void> calibrate_given_eta(
     const MonthlyModel& model, const calibration::CalibrationProblem& problem,
-    const Eigen::MatrixXd& eta, const calibration::CalibrationOptions& options,
-    bool prior_sensitivity, const calibration::RunContext& context, AssessedCalibration& result);
+    const calibration::DesignRuns& design, const Eigen::MatrixXd& eta,
+    const calibration::CalibrationOptions& options, bool prior_sensitivity,
+    const calibration::RunContext& context, AssessedCalibration& result);
 
 }  // namespace recald::assessment

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/calibration/posterior/emulator.hpp"
 #include "core/calibration/samplers/dram.hpp"
 #include "core/model/model_adaptors.hpp"
 #include "core/random/streams.hpp"
@@ -61,22 +62,24 @@ void interleave(const CutProblem& cut, Eigen::Index d, const ChainDraws& part, C
 
 Error cancelled() { return {ErrorCode::cancelled, "the calibration was cancelled"}; }
 
-/// Runs one chain through all values of η. Calls `go_on(done)` after each.
+/// Runs one chain through all values of η. Calls `go_on(done)` after each, and within each as often
+/// as its sampler does.
 template <class GoOn>
 Result<void> walk(const CutProblem& cut, Rng& rng, ChainDraws& draws, ChainStatistics& statistics,
                   GoOn go_on) {
   const int iterations = cut.options.settle_each + cut.options.kept_each * cut.options.stride;
   ChainState state;
   for (Eigen::Index d = 0; d < cut.eta.rows(); ++d) {
+    const SamplerObserver observer = [&](int, int) { return go_on(static_cast<int>(d)); };
     auto posterior = TRY(posterior_at(cut, d));
     if (d == 0) {
       const int run_in = cut.options.burn_in + 1;
-      auto first = TRY(dram(posterior, {run_in, cut.options.burn_in, {}}, rng));
+      auto first = TRY(dram(posterior, {run_in, cut.options.burn_in, {}}, rng, observer));
       state = first.last;
       statistics.density_evaluations += first.statistics.density_evaluations;
     }
     // No burn-in: the steps stay as learnt, and the iterations that settle are dropped here.
-    auto chain = TRY(dram(posterior, {iterations, 0, std::move(state)}, rng));
+    auto chain = TRY(dram(posterior, {iterations, 0, std::move(state)}, rng, observer));
     state = chain.last;
     statistics.density_evaluations += chain.statistics.density_evaluations;
     const ChainDraws part = to_natural_units(chain, posterior);
@@ -90,10 +93,14 @@ Result<void> walk(const CutProblem& cut, Rng& rng, ChainDraws& draws, ChainStati
 
 }  // namespace
 
-Result<CutDraws> sample_given_eta(const MonthlyModel& model, const Calibration& base,
+Result<CutDraws> sample_given_eta(const MonthlyModel& model,
+                                  const Eigen::VectorXd& emulator_error_sd, const Calibration& base,
                                   const CalibrationProblem& problem, const Eigen::MatrixXd& eta,
                                   const CutOptions& options, const RunContext& context) {
-  const auto data = normalise_problem(problem, base.normalisation);
+  auto data = normalise_problem(problem, base.normalisation);
+  if (emulator_error_sd.size() > 0) {
+    add_emulator_error(emulator_error_sd, model.month_count(), data);
+  }
   const CutProblem cut{model, problem, data, base.hyper_prior, eta, options};
   const auto count = static_cast<std::size_t>(options.chains);
   CutDraws result{std::vector<ChainDraws>(count), std::vector<ChainStatistics>(count)};

@@ -32,16 +32,18 @@ struct CutDraws {
 };
 
 /// @param model      θ (q), then η (r).
+/// @param emulator_error_sd  (outputs * months) in units, where `model` is an emulator; empty: it
+/// is
+///                   the model itself.
 /// @param base       A calibration of the same problem at one η; gives normalisation
 ///                   and hyper-prior.
 /// @param problem    Its parameters are θ alone.
 /// @param eta        (n x r), n >= 1.
 /// @return the draws; an error of the model; cancelled.
 /// @note   Chain k draws from its own stream, so any executor gives the same bytes.
-[[nodiscard]] Result<CutDraws> sample_given_eta(const MonthlyModel& model, const Calibration& base,
-                                                const CalibrationProblem& problem,
-                                                const Eigen::MatrixXd& eta,
-                                                const CutOptions& options,
-                                                const RunContext& context);
+[[nodiscard]] Result<CutDraws> sample_given_eta(
+    const MonthlyModel& model, const Eigen::VectorXd& emulator_error_sd, const Calibration& base,
+    const CalibrationProblem& problem, const Eigen::MatrixXd& eta, const CutOptions& options,
+    const RunContext& context);
 
 }  // namespace recald::calibration

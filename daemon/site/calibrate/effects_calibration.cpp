@@ -71,7 +71,7 @@ Result<void> calibrate_with_effects(PreparedSite& prepared, const CalibrateOptio
       {has, fmt::format("{}, so its parameters are not calibrated on them again: the others are "
                         "drawn given each of {} draws of them.",
                         how, eta.rows())});
-  return assessment::calibrate_given_eta(*prepared.model, prepared.problem, eta,
+  return assessment::calibrate_given_eta(*prepared.model, prepared.problem, design, eta,
                                          options.calibration, options.prior_sensitivity, context,
                                          result);
 }

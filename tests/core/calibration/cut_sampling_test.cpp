@@ -63,7 +63,7 @@ constexpr CutOptions kOptions{.burn_in = 3000, .settle_each = 200, .kept_each = 
 // θ is what the data leave of the sum, so the cut's spread is that of θ at one η and of η together.
 TEST(CutSampling, GivesThetaForEveryEtaAndLeavesEtaAlone) {
   const CutCase c;
-  const auto cut = sample_given_eta(c.model, c.base, c.problem, c.eta, kOptions, {});
+  const auto cut = sample_given_eta(c.model, {}, c.base, c.problem, c.eta, kOptions, {});
   ASSERT_TRUE(cut.has_value()) << cut.error().message;
   ASSERT_EQ(cut->chains.size(), 4u);
   double sum = 0.0;
@@ -89,12 +89,12 @@ TEST(CutSampling, GivesThetaForEveryEtaAndLeavesEtaAlone) {
 TEST(CutSampling, DoesNotDependOnTheExecutor) {
   const CutCase c;
   const CutOptions quick{.burn_in = 200, .settle_each = 10, .kept_each = 4, .stride = 2};
-  const auto forwards = sample_given_eta(c.model, c.base, c.problem, c.eta, quick, {});
+  const auto forwards = sample_given_eta(c.model, {}, c.base, c.problem, c.eta, quick, {});
   RunContext backwards;
   backwards.executor = [](std::size_t count, const std::function<void(std::size_t)>& body) {
     for (std::size_t i = count; i-- > 0;) body(i);
   };
-  const auto other = sample_given_eta(c.model, c.base, c.problem, c.eta, quick, backwards);
+  const auto other = sample_given_eta(c.model, {}, c.base, c.problem, c.eta, quick, backwards);
   ASSERT_TRUE(forwards.has_value());
   ASSERT_TRUE(other.has_value());
   for (std::size_t k = 0; k < 4; ++k) {
@@ -102,11 +102,43 @@ TEST(CutSampling, DoesNotDependOnTheExecutor) {
   }
 }
 
+// Within one value of η too, which takes as long as it has iterations.
+TEST(CutSampling, AsksAsOftenAsASamplerDoes) {
+  const CutCase c;
+  RunContext context;
+  int asked = 0;
+  context.observer = [&](const Progress&) { return ++asked < 2; };
+  const CutOptions one_long{
+      .burn_in = 100'000, .settle_each = 200, .kept_each = 20, .stride = 20, .chains = 1};
+  const auto stopped = sample_given_eta(c.model, {}, c.base, c.problem, c.eta, one_long, context);
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
+  EXPECT_EQ(asked, 2);
+}
+
+// A polynomial in the place of the model: what it lacks is known to be uncertain.
+TEST(CutSampling, TheErrorOfAnEmulatorWidensTheta) {
+  const CutCase c;
+  const auto sd_with = [&](const Eigen::VectorXd& error_sd) {
+    const auto cut = sample_given_eta(c.model, error_sd, c.base, c.problem, c.eta, kOptions, {});
+    double sum = 0.0, squares = 0.0, n = 0.0;
+    for (const ChainDraws& chain : cut->chains) {
+      for (const double theta : chain.theta.col(0)) {
+        sum += theta;
+        squares += theta * theta;
+        n += 1.0;
+      }
+    }
+    return std::sqrt(squares / n - sum / n * sum / n);
+  };
+  EXPECT_GT(sd_with(Eigen::VectorXd::Constant(kMonths, 10.0)), 1.5 * sd_with({}));
+}
+
 TEST(CutSampling, StopsWhenAsked) {
   const CutCase c;
   RunContext context;
   context.observer = [](const Progress& progress) { return progress.done < 3; };
-  const auto stopped = sample_given_eta(c.model, c.base, c.problem, c.eta, kOptions, context);
+  const auto stopped = sample_given_eta(c.model, {}, c.base, c.problem, c.eta, kOptions, context);
   ASSERT_FALSE(stopped.has_value());
   EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
 }
