@@ -94,8 +94,9 @@ void ChangePoint::observe(double standardised) {
 }
 
 double ChangePoint::change_within(std::size_t steps) const {
+  // The longest run began with, or before, the first observation: that is no change.
   const auto end = probabilities_.begin() +
-                   static_cast<std::ptrdiff_t>(std::min(steps + 1, probabilities_.size()));
+                   static_cast<std::ptrdiff_t>(std::min(steps + 1, probabilities_.size() - 1));
   return std::accumulate(probabilities_.begin(), end, 0.0);
 }
 

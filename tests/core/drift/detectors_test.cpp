@@ -105,6 +105,22 @@ TEST(ChangePoint, FindsWhenTheLevelChanged) {
   EXPECT_GT(change.change_within(12), 0.95);
 }
 
+// A record of a few months has not changed merely because it is short.
+TEST(ChangePoint, WhatBeganWithTheRecordIsNoChange) {
+  Rng rng{5};
+  for (int run = 0; run < 20; ++run) {
+    ChangePoint change;
+    EXPECT_EQ(change.change_within(12), 0.0);
+    double sum = 0.0;
+    for (int month = 1; month <= 12; ++month) {
+      change.observe(0.3 * rng.normal());
+      sum += change.change_within(12);
+      EXPECT_LT(change.change_within(12), 0.7) << month;
+    }
+    EXPECT_LT(sum / 12.0, 0.35);
+  }
+}
+
 // Bayes' rule by hand: two observations, a change between them or not.
 TEST(ChangePoint, AgreesWithBayesRuleByHand) {
   const ChangePoint::Options options{.mean_run = 10.0, .prior_sd = 1.5, .runs_max = 100};
