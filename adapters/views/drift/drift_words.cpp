@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <optional>
+#include <vector>
 
 #include "adapters/views/frame/cost_words.hpp"
 #include "core/absent.hpp"
@@ -15,8 +19,6 @@
 
 namespace recald::views {
 namespace {
-
-constexpr double kDaysAMonth = 365.25 / 12.0;
 
 /// Means of an output from the change to the alarm, in its unit.
 struct SinceChange {
@@ -35,6 +37,49 @@ SinceChange since_change(const drift::SiteDrift& drift, const drift::Alarm& alar
     ++since.months;
   }
   return since;
+}
+
+/// What a month's figure stands for in money: its kWh, or its kW.
+double amount_of(const drift::SiteDrift& drift, int month, double figure, bool is_peak) {
+  const auto name = metering::parse_month(drift.month_name(month));
+  if (is_peak || !name) return figure;
+  return figure * metering::days_in(*name);
+}
+
+/// (measured - forecast) of the months since the change, all together: kWh, or kW of months.
+double excess_so_far(const drift::SiteDrift& drift, const drift::Alarm& alarm, bool is_peak) {
+  double sum = 0.0;
+  for (const drift::PrequentialMonth& month : drift.record) {
+    const auto& output = month.outputs[static_cast<std::size_t>(alarm.output)];
+    if (!output || month.month < alarm.since || month.month > alarm.month) continue;
+    sum += amount_of(drift, month.month, output->measured - output->q50, is_peak);
+  }
+  return sum;
+}
+
+/// What a year would be without the change, in its own season: of each month of the calendar the
+/// latest that is known, its forecast or, before the change, its figure. Absent while one is not.
+std::optional<double> expected_year(const drift::SiteDrift& drift, const drift::Alarm& alarm,
+                                    bool is_peak) {
+  const auto k = static_cast<std::size_t>(alarm.output);
+  std::vector<double> expected(drift.months.size(), kAbsent);
+  const std::vector<double>& measured = drift.outputs[k].measured;
+  for (std::size_t i = 0; i < measured.size() && static_cast<int>(i) < alarm.since; ++i) {
+    expected[i] = measured[i];
+  }
+  for (const drift::PrequentialMonth& month : drift.record) {
+    if (month.outputs[k]) expected[static_cast<std::size_t>(month.month)] = month.outputs[k]->q50;
+  }
+  std::array<double, 12> of_calendar{};
+  of_calendar.fill(kAbsent);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const auto name = metering::parse_month(drift.months[i]);
+    if (!name || std::isnan(expected[i])) continue;
+    of_calendar[static_cast<unsigned>(name->month()) - 1] =
+        amount_of(drift, static_cast<int>(i), expected[i], is_peak);
+  }
+  const double sum = std::accumulate(of_calendar.begin(), of_calendar.end(), 0.0);
+  return std::isnan(sum) ? std::nullopt : std::optional{sum};
 }
 
 /// Mean of (measured - forecast) / forecast from the change to the alarm.
@@ -175,19 +220,22 @@ std::string alarm_sentence(const drift::SiteDrift& drift, const drift::Alarm& al
 
 std::string alarm_cost_words(const drift::SiteDrift& drift, const drift::Alarm& alarm) {
   const drift::FollowedOutput& output = drift.outputs[static_cast<std::size_t>(alarm.output)];
-  const SinceChange since = since_change(drift, alarm);
-  if (since.months == 0) return "";
-  const double excess = relative_excess(drift, alarm) * since.expected / since.months;
   const bool is_peak = output.name.ends_with("_peak_kW");
-  const double a_month = is_peak ? excess : excess * kDaysAMonth;
-  const auto times = [&](const std::optional<double>& rate) {
-    return rate ? std::optional{*rate * a_month} : std::nullopt;
+  const auto words = [&](double amount, std::string_view period) {
+    const auto times = [&](const std::optional<double>& rate) {
+      return rate ? std::optional{*rate * amount} : std::nullopt;
+    };
+    return is_peak ? cost_words(times(output.rates.per_kW_month), {}, drift.currency, period)
+                   : cost_words(times(output.rates.per_kWh),
+                                times(output.rates.emissions_kg_per_kWh), drift.currency, period);
   };
-  const std::string words =
-      is_peak ? cost_words(times(output.rates.per_kW_month), {}, drift.currency)
-              : cost_words(times(output.rates.per_kWh), times(output.rates.emissions_kg_per_kWh),
-                           drift.currency);
-  return words.empty() ? "" : "If it goes on, " + display::uncapitalised(words);
+  std::string sentences = words(excess_so_far(drift, alarm, is_peak), "so far");
+  const auto year = expected_year(drift, alarm, is_peak);
+  const std::string of_a_year =
+      year ? words(relative_excess(drift, alarm) * *year, "a year") : std::string{};
+  if (of_a_year.empty()) return sentences;
+  if (!sentences.empty()) sentences += " ";
+  return sentences + "If it goes on, " + display::uncapitalised(of_a_year);
 }
 
 std::string cause_words(const drift::SiteDrift& drift, const drift::Cause& cause) {

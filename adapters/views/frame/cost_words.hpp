@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace recald::views {
 
@@ -13,5 +14,10 @@ namespace recald::views {
 [[nodiscard]] std::string cost_words(std::optional<double> money_month,
                                      std::optional<double> emissions_kg_month,
                                      const std::string& currency);
+
+/// The same of amounts over whatever `period` says: "It costs about 540 USD so far."
+[[nodiscard]] std::string cost_words(std::optional<double> money,
+                                     std::optional<double> emissions_kg,
+                                     const std::string& currency, std::string_view period);
 
 }  // namespace recald::views

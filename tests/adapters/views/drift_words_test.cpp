@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "adapters/views/frame/format.hpp"
 #include "core/absent.hpp"
 
 namespace recald::views {
@@ -103,6 +106,41 @@ TEST_F(DriftWords, AMeterIsToldWithItsFactorAndWhatTheHoursCallIt) {
   EXPECT_THAT(said({meter, named("vacancy", "Vacancy", 0.1)}),
               HasSubstr("the chilled water meter shows 0.667 times what it should (90 %: 0.65 to "
                         "0.68); by its hours: Meter has lost or reversed a phase"));
+}
+
+// Chilled water of a summer is no twelfth of its year.
+TEST_F(DriftWords, AYearsCostFollowsTheSeasonAndSoFarIsTheSum) {
+  drift::FollowedOutput& output = drift_.outputs[0];
+  output.rates.per_kWh = 0.1;
+  drift_.currency = "USD";
+  drift_.record.clear();
+  double year_kWh = 0.0;
+  double so_far_kWh = 0.0;
+  for (int month = 0; month < 21; ++month) {
+    const double usual = 1000.0 * (1.0 + 0.95 * std::cos(0.5236 * (month % 12 - 6)));
+    const bool has_changed = month >= 18;
+    const double measured = has_changed ? 1.4 * usual : usual;
+    output.measured[static_cast<std::size_t>(month)] = measured;
+    const int month_days = metering::days_in(std::chrono::year{2022} / (1 + month % 12));
+    if (month < 12) year_kWh += 0.4 * usual * month_days;
+    if (month == 18 || month == 19) so_far_kWh += 0.4 * usual * month_days;
+    if (month < 12) continue;
+    drift::PrequentialMonth record{.month = month, .outputs = {std::nullopt, std::nullopt}};
+    record.outputs[0] = drift::ForecastRecord{.q50 = usual, .measured = measured};
+    drift_.record.push_back(record);
+  }
+  for (std::size_t month = 21; month < 24; ++month) output.measured[month] = kAbsent;
+  const auto words = [&] { return alarm_cost_words(drift_, alarm_.alarm); };
+  EXPECT_EQ(words(),
+            fmt::format("It costs about {} USD so far. If it goes on, it costs about {} USD "
+                        "a year.",
+                        count_text(0.1 * so_far_kWh), count_text(0.1 * year_kWh)));
+  // While a month of the calendar is not known, no year is.
+  for (const std::size_t month : {0, 1, 2, 12, 13, 14}) output.measured[month] = kAbsent;
+  drift_.record.erase(drift_.record.begin(), drift_.record.begin() + 3);
+  EXPECT_EQ(words(), fmt::format("It costs about {} USD so far.", count_text(0.1 * so_far_kWh)));
+  output.rates = {};
+  EXPECT_EQ(words(), "");
 }
 
 }  // namespace
