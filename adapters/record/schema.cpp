@@ -186,11 +186,22 @@ struct Role {
   const char* name;
   const char* grants;
 };
+/// What a leaked password of an ingester is good for: rows as gateways send them. It names no site,
+/// changes no version, reads no file of one, and gives no result for a worker's. What an earlier
+/// release granted is taken back.
 constexpr auto kRoles = std::to_array<Role>({
     {"recald_ingest",
-     "GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO recald_ingest;"
-     "GRANT INSERT ON source, meter, interval, month, event, result, job TO recald_ingest;"
-     "GRANT UPDATE ON site, source, job TO recald_ingest;"
+     "REVOKE ALL ON ALL TABLES IN SCHEMA {schema} FROM recald_ingest;"
+     "GRANT SELECT ON fleet, site, site_version, source, meter, interval, month, event, result, "
+     "job "
+     "TO recald_ingest;"
+     "GRANT INSERT ON source, meter, interval, month, event TO recald_ingest;"
+     "GRANT INSERT (site, kind, month, at, accepted, named, message, summary, sha256) ON result "
+     "TO recald_ingest;"
+     "GRANT INSERT (site, version, kind, month, until_seq, now, input_sha256, asked_by) ON job "
+     "TO recald_ingest;"
+     "GRANT UPDATE (heard, seq, event_seq, newest) ON site TO recald_ingest;"
+     "GRANT UPDATE (outbox, entries, events, results) ON source TO recald_ingest;"
      "GRANT EXECUTE ON FUNCTION recald_make_partition TO recald_ingest"},
     {"recald_worker",
      "GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO recald_worker;"

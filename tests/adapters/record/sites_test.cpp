@@ -79,7 +79,19 @@ TEST_F(Record, AnIngesterNeedsNoMoreThanItsRole) {
   EXPECT_TRUE(taken) << taken.error().message;
   EXPECT_EQ(ask("SELECT count(*) FROM job"), "1\n");
   EXPECT_FALSE((*opened)->run("DELETE FROM interval"));
-  EXPECT_FALSE((*opened)->run("UPDATE interval SET mean_kw = 1"));
+  for (const char* too_much :
+       {"UPDATE interval SET mean_kw = 1", "UPDATE site SET id = 'mine'",
+        "UPDATE site SET version = 7", "UPDATE site SET retired = now()", "SELECT * FROM site_file",
+        "SELECT * FROM file", "SELECT * FROM whole_file", "SELECT * FROM site_state",
+        "SELECT * FROM audit", "DELETE FROM event", "UPDATE job SET state = 'done'",
+        "TRUNCATE interval",
+        "INSERT INTO result (site, job, kind, month, at, accepted, named, message, summary, "
+        "sha256) "
+        "SELECT site, number, kind, month, now(), true, true, '', '', '' FROM job",
+        "INSERT INTO audit (time, who, action, subject, text) VALUES (now(), 'a', 'b', 'c', 'd')",
+        "INSERT INTO site (id, version, added) VALUES ('more', 1, now())"}) {
+    EXPECT_FALSE((*opened)->run(too_much)) << too_much;
+  }
   (void)ask("DROP USER plain_ingester");
 }
 
