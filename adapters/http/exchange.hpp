@@ -19,6 +19,7 @@
 #include "adapters/http/ascii.hpp"
 #include "adapters/http/dress.hpp"
 #include "adapters/http/message.hpp"
+#include "adapters/ports/worker.hpp"
 #include "core/result.hpp"
 
 namespace recald::http {
@@ -26,6 +27,8 @@ namespace recald::http {
 /// The settings that all sessions of a server share.
 struct SessionRules {
   AccessRules access;
+  std::set<std::string> prompt_paths;  ///< Answered at once, not in turn.
+  Worker* worker = nullptr;            ///< Makes the other answers; null: the loop's own thread.
   std::set<std::string>
       origins;  ///< Whose pages may ask from a browser: "https://bms.example.org".
   std::size_t body_max = 1024 * 1024;

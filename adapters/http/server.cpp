@@ -227,6 +227,8 @@ Result<std::unique_ptr<Server>> Server::listen(boost::asio::io_context& context,
   }
   shared->connections_max = options.connections_max;
   shared->rules = {.access = options.access,
+                   .prompt_paths = options.prompt_paths,
+                   .worker = options.worker,
                    .origins = options.origins,
                    .body_max = options.body_max,
                    .header_max = options.header_max,

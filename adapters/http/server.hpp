@@ -13,6 +13,7 @@
 
 #include "adapters/http/access.hpp"
 #include "adapters/http/message.hpp"
+#include "adapters/ports/worker.hpp"
 #include "core/result.hpp"
 
 namespace boost::asio {
@@ -39,6 +40,11 @@ struct ServerOptions {
   std::uint16_t port = 8080;          ///< 0: any free port.
   /// `checks_host` is set by the server: on a loopback address always, elsewhere with `names`.
   AccessRules access;
+  /// Answered at once; other paths in turn, with pauses after long answers.
+  std::set<std::string> prompt_paths;
+  /// Makes the other answers, so that the loop does not wait for what they wait for; used by nobody
+  /// else, and ends before the context. Null: the handler is called on the loop's thread.
+  Worker* worker = nullptr;
   std::set<std::string> origins;  ///< Whose pages may ask from a browser; empty: none but ours.
   std::optional<TlsFiles> tls;
   std::size_t body_max = 1024 * 1024;
@@ -57,7 +63,8 @@ class Server {
   /// connections. It disconnects slow clients, and if there are too many connections, one that
   /// waits.
   /// @param context  Run by one thread; outlives this.
-  /// @param handler  Called on that thread, with whole requests only. If it throws, we send a 500.
+  /// @param handler  Called on that thread, or on the worker's, with whole requests only. If it
+  ///                 throws, we send a 500.
   /// @return the server; or invalid_value: not a numeric address, or one that others can reach
   ///         without both a token and TLS; io_failed: the address is in use or not ours, or the
   ///         certificate or key cannot be read or do not belong together.

@@ -115,10 +115,16 @@ class Session {
       return dressed(*request, called(handler_, *request));
     };
     Response answer;
-    if (rules_.access.open_paths.contains(request->path)) {
+    if (rules_.prompt_paths.contains(request->path)) {
       answer = make_answer();
     } else {
-      answer = co_await turns_.in_turn(stream_.get_executor(), make_answer);
+      Turns::Turn turn{turns_, stream_.get_executor()};
+      co_await turn.come();
+      if (rules_.worker == nullptr) {
+        answer = turn.make(make_answer);
+      } else {
+        co_await elsewhere(*rules_.worker, [&] { answer = make_answer(); });
+      }
     }
     if (rules_.is_stopping) co_return false;
     const Response response = readable_by_origin(*request, rules_, std::move(answer));

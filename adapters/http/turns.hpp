@@ -10,6 +10,10 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <chrono>
 #include <deque>
+#include <functional>
+#include <memory>
+
+#include "adapters/ports/worker.hpp"
 
 namespace recald::http {
 
@@ -19,46 +23,60 @@ class Turns {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Waits for the turn of one request, and then calls answer(). If the caller's coroutine ends
-  /// meanwhile, its turn passes to the next.
-  template <class Executor, class Answer>
-  boost::asio::awaitable<std::invoke_result_t<Answer>> in_turn(Executor executor, Answer answer) {
-    boost::asio::steady_timer timer{executor, Clock::time_point::max()};
-    const Place place{*this, timer};
-    while (waiting_.front() != &timer || Clock::now() < free_at_) {
-      timer.expires_at(waiting_.front() == &timer ? free_at_ : Clock::time_point::max());
-      boost::system::error_code woken;
-      co_await timer.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, woken));
-    }
-    const auto begin = Clock::now();
-    auto answered = answer();
-    const auto end = Clock::now();
-    if (end - begin > kShort) free_at_ = end + (end - begin);
-    co_return answered;
-  }
-
- private:
-  static constexpr std::chrono::milliseconds kShort{5};
-
-  class Place {
+  /// A place in the queue, and the turn while it lasts; then the next one has it.
+  class Turn {
    public:
-    Place(Turns& turns, boost::asio::steady_timer& timer) : turns_(turns), timer_(timer) {
+    template <class Executor>
+    Turn(Turns& turns, const Executor& executor)
+        : turns_(turns), timer_{executor, Clock::time_point::max()} {
       turns_.waiting_.push_back(&timer_);
     }
-    ~Place() {
+    ~Turn() {
       std::erase(turns_.waiting_, &timer_);
       if (!turns_.waiting_.empty()) turns_.waiting_.front()->cancel();
     }
-    Place(const Place&) = delete;
-    Place& operator=(const Place&) = delete;
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+    boost::asio::awaitable<void> come() {
+      while (turns_.waiting_.front() != &timer_ || Clock::now() < turns_.free_at_) {
+        const bool is_next = turns_.waiting_.front() == &timer_;
+        timer_.expires_at(is_next ? turns_.free_at_ : Clock::time_point::max());
+        boost::system::error_code woken;
+        co_await timer_.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, woken));
+      }
+    }
+
+    /// Makes an answer on the loop's own thread.
+    template <class Answer>
+    auto make(Answer answer) {
+      const auto begin = Clock::now();
+      auto answered = answer();
+      const auto end = Clock::now();
+      if (end - begin > kShort) turns_.free_at_ = end + (end - begin);
+      return answered;
+    }
 
    private:
+    static constexpr std::chrono::milliseconds kShort{5};
+
     Turns& turns_;
-    boost::asio::steady_timer& timer_;
+    boost::asio::steady_timer timer_;
   };
 
+ private:
   std::deque<boost::asio::steady_timer*> waiting_;
   Clock::time_point free_at_{};
 };
+
+/// Does `work` on the worker's thread, which nobody else uses meanwhile.
+inline boost::asio::awaitable<void> elsewhere(Worker& worker, std::function<void()> work) {
+  co_await boost::asio::async_initiate<const boost::asio::use_awaitable_t<>, void()>(
+      [&](auto handler) {
+        const auto kept = std::make_shared<decltype(handler)>(std::move(handler));
+        worker.run(std::move(work), [kept] { std::move (*kept)(); });
+      },
+      boost::asio::use_awaitable);
+}
 
 }  // namespace recald::http

@@ -28,7 +28,6 @@ using std::chrono::steady_clock;
 constexpr auto kSettings = std::to_array<std::pair<const char*, const char*>>({
     {"application_name", "recald"},
     {"client_encoding", "UTF8"},
-    {"connect_timeout", "10"},
     {"keepalives", "1"},
     {"keepalives_idle", "10"},
     {"keepalives_interval", "5"},
@@ -42,7 +41,9 @@ constexpr auto kSession =
     "SET idle_in_transaction_session_timeout = '60s'; SET tcp_keepalives_idle = 10; "
     "SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3; SET tcp_user_timeout = 25000";
 
-constexpr int kTries = 3;  ///< Of a transaction that lost to another.
+constexpr milliseconds kConnectMax{10'000};
+constexpr milliseconds kFarewell{3'000};  ///< After a stop.
+constexpr int kTries = 3;                 ///< Of a transaction that lost to another.
 constexpr milliseconds kPause{50};
 constexpr std::string_view kUniqueViolation = "23505";
 
@@ -103,6 +104,33 @@ class StopEvent {
   };
   int file_;
   std::stop_callback<Wake> on_stop_;
+};
+
+/// A wait with an end: `due`, or a little after a stop.
+class Wait {
+ public:
+  Wait(milliseconds time_max, const std::stop_token& stop)
+      : stop_{stop}, stopped_{stop}, due_{steady_clock::now() + time_max} {}
+
+  /// @return whether something may have happened on the socket; false: it is over.
+  [[nodiscard]] bool for_socket(int socket, short events) {
+    if (stop_.stop_requested() && !is_told_) {
+      is_told_ = true;
+      due_ = std::min(due_, steady_clock::now() + kFarewell);
+    }
+    const auto left = std::chrono::ceil<milliseconds>(due_ - steady_clock::now());
+    if (left.count() <= 0) return false;
+    std::array<::pollfd, 2> files{
+        {{socket, events, 0}, {is_told_ ? -1 : stopped_.file(), POLLIN, 0}}};
+    ::poll(files.data(), files.size(), static_cast<int>(left.count()));
+    return true;
+  }
+
+ private:
+  const std::stop_token& stop_;
+  StopEvent stopped_;
+  steady_clock::time_point due_;
+  bool is_told_ = false;
 };
 
 }  // namespace
@@ -204,6 +232,7 @@ struct Connection::Impl {
   using Handle = std::unique_ptr<PGconn, Finish>;
 
   std::string url, password;
+  Patience patience{};
   std::string name{};  ///< "PostgreSQL at db.example:5432/fleet"
   Handle handle{};
   bool is_in_transaction = false;
@@ -229,17 +258,66 @@ struct Connection::Impl {
     listened.clear();
     notified.clear();
     handle.reset();
-    Handle made{PQconnectdbParams(keywords.data(), values.data(), 1)};
-    if (PQstatus(made.get()) != CONNECTION_OK) {
-      return failure(ErrorCode::io_failed, fmt::format("{} cannot be reached: {}", name,
-                                                       one_line(PQerrorMessage(made.get()))));
-    }
+    Handle made{PQconnectStartParams(keywords.data(), values.data(), 1)};
+    if (auto connected = finish_connecting(made.get()); !connected) return connected;
     handle = std::move(made);
     // Or the library writes to our standard error what a server says when it ends.
     PQsetNoticeProcessor(
         handle.get(), [](void*, const char*) {}, nullptr);
-    TRY(finished(PQexec(handle.get(), kSession)));
-    return {};
+    // Else what does not fit into the socket's buffer waits without a limit.
+    PQsetnonblocking(handle.get(), 1);
+    return simple(kSession);
+  }
+
+  [[nodiscard]] Result<void> finish_connecting(PGconn* made) const {
+    Wait wait{kConnectMax, patience.stop};
+    auto next = PGRES_POLLING_WRITING;
+    while (next == PGRES_POLLING_READING || next == PGRES_POLLING_WRITING) {
+      const short events = next == PGRES_POLLING_READING ? POLLIN : POLLOUT;
+      if (PQstatus(made) == CONNECTION_BAD) break;
+      if (!wait.for_socket(PQsocket(made), events)) {
+        return failure(ErrorCode::io_failed,
+                       fmt::format("{} cannot be reached: it does not answer", name));
+      }
+      next = PQconnectPoll(made);
+    }
+    if (PQstatus(made) == CONNECTION_OK) return {};
+    return failure(ErrorCode::io_failed,
+                   fmt::format("{} cannot be reached: {}", name, one_line(PQerrorMessage(made))));
+  }
+
+  /// Waits until the library has read the next result. @return or io_failed, and the connection is
+  /// given up: the server does not answer.
+  [[nodiscard]] Result<void> await() {
+    Wait wait{patience.answer_max, patience.stop};
+    for (;;) {
+      const int left = PQflush(handle.get());
+      // Of a connection that is lost the library has a result that says so.
+      if (left < 0 || (left == 0 && PQisBusy(handle.get()) == 0)) return {};
+      const short events = left > 0 ? POLLIN | POLLOUT : POLLIN;
+      if (!wait.for_socket(PQsocket(handle.get()), events)) {
+        handle.reset();
+        return failure(ErrorCode::io_failed, name + " does not answer");
+      }
+      if (PQconsumeInput(handle.get()) == 0) return {};
+    }
+  }
+
+  /// The last result of what was sent. @param sent  What the library said of the sending.
+  [[nodiscard]] Result<Rows> answered(int sent) {
+    if (sent == 0) return lost();
+    PGresult* last = nullptr;
+    for (;;) {
+      if (auto read = await(); !read) {
+        PQclear(last);
+        return tl::unexpected(read.error());
+      }
+      PGresult* const one = PQgetResult(handle.get());
+      if (one == nullptr) break;
+      PQclear(std::exchange(last, one));
+    }
+    if (last == nullptr) return lost();
+    return finished(last);
   }
 
   /// Reads what an idle connection may hold: news, or the server's last words and the end.
@@ -256,7 +334,9 @@ struct Connection::Impl {
 
   /// Makes a broken connection again, but not within a transaction, which went with it.
   [[nodiscard]] Result<void> ready() {
-    return is_in_transaction || is_alive() ? Result<void>{} : connect();
+    if (is_in_transaction && handle) return {};
+    if (is_in_transaction) return failure(ErrorCode::io_failed, name + ": the connection is lost");
+    return is_alive() ? Result<void>{} : connect();
   }
 
   [[nodiscard]] tl::unexpected<Error> refused(const PGresult* result) {
@@ -288,20 +368,20 @@ struct Connection::Impl {
   }
 
   [[nodiscard]] Result<void> simple(const char* statements) {
-    TRY(finished(PQexec(handle.get(), statements)));
+    TRY(answered(PQsendQuery(handle.get(), statements)));
     return {};
   }
 
   [[nodiscard]] Result<std::string> name_of(const std::string& statement) {
     if (const auto known = prepared.find(statement); known != prepared.end()) return known->second;
     std::string made = fmt::format("s{}", prepared.size());
-    TRY(finished(PQprepare(handle.get(), made.c_str(), statement.c_str(), 0, nullptr)));
+    TRY(answered(PQsendPrepare(handle.get(), made.c_str(), statement.c_str(), 0, nullptr)));
     prepared.emplace(statement, made);
     return made;
   }
 
   [[nodiscard]] Result<void> commit() {
-    const auto done = TRY(finished(PQexec(handle.get(), "COMMIT")));
+    const auto done = TRY(answered(PQsendQuery(handle.get(), "COMMIT")));
     // A transaction in which a statement failed is rolled back, and COMMIT says so quietly.
     if (std::string_view{PQcmdStatus(of(done.result_))} == "COMMIT") return {};
     return failure(ErrorCode::malformed, name + ": the transaction was rolled back");
@@ -318,8 +398,8 @@ struct Connection::Impl {
     is_in_transaction = true;
     auto done = work();
     if (done) done = commit();
-    if (!done && PQtransactionStatus(handle.get()) != PQTRANS_IDLE) {
-      PQclear(PQexec(handle.get(), "ROLLBACK"));
+    if (!done && handle && PQtransactionStatus(handle.get()) != PQTRANS_IDLE) {
+      if (!simple("ROLLBACK")) handle.reset();  // the server rolls back what is left
     }
     return done;
   }
@@ -342,7 +422,8 @@ Connection::Connection(std::unique_ptr<Impl> impl) : impl_{std::move(impl)} {}
 Connection::~Connection() = default;
 
 Result<std::unique_ptr<Connection>> Connection::open(const std::string& url,
-                                                     const std::string& password) {
+                                                     const std::string& password,
+                                                     const Patience& patience) {
   const std::unique_ptr<PQconninfoOption, decltype(&PQconninfoFree)> options{
       PQconninfoParse(url.c_str(), nullptr), &PQconninfoFree};
   const bool is_url = url.starts_with("postgresql://") || url.starts_with("postgres://");
@@ -363,7 +444,8 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::string& url,
                                "where passwords belong",
                                name));
   }
-  auto impl = std::make_unique<Impl>(Impl{.url = url, .password = password, .name = name});
+  auto impl = std::make_unique<Impl>(
+      Impl{.url = url, .password = password, .patience = patience, .name = name});
   TRY(impl->connect());
   return std::unique_ptr<Connection>{new Connection{std::move(impl)}};
 }
@@ -376,9 +458,9 @@ Result<Rows> Connection::run(const std::string& statement,
   TRY(impl_->ready());
   const auto name = TRY(impl_->name_of(statement));
   const auto values = pointers(parameters);
-  return impl_->finished(PQexecPrepared(impl_->handle.get(), name.c_str(),
-                                        static_cast<int>(values.size()), values.data(), nullptr,
-                                        nullptr, 0));
+  return impl_->answered(PQsendQueryPrepared(impl_->handle.get(), name.c_str(),
+                                             static_cast<int>(values.size()), values.data(),
+                                             nullptr, nullptr, 0));
 }
 
 Result<void> Connection::run_all(const std::string& statements) {
@@ -408,22 +490,27 @@ Result<void> Connection::for_each(const std::string& statement,
     return impl_->lost();
   }
   PQsetSingleRowMode(connection);
-  Result<void> done;
-  while (PGresult* const result = PQgetResult(connection)) {
+  for (;;) {
+    TRY(impl_->await());
+    PGresult* const result = PQgetResult(connection);
+    if (result == nullptr) return {};
     const auto rows = impl_->finished(result);
-    if (!done) continue;  // what was on the way when it was cancelled
     if (!rows) {
-      done = tl::unexpected(rows.error());
-    } else if (PQresultStatus(result) == PGRES_SINGLE_TUPLE) {
-      done = visit(*rows);
-      if (done) continue;
-      std::array<char, 256> ignored{};
-      const std::unique_ptr<PGcancel, decltype(&PQfreeCancel)> cancel{PQgetCancel(connection),
-                                                                      &PQfreeCancel};
-      PQcancel(cancel.get(), ignored.data(), ignored.size());
+      while (impl_->await()) {
+        PGresult* const rest = PQgetResult(connection);
+        if (rest == nullptr) break;
+        PQclear(rest);
+      }
+      return tl::unexpected(rows.error());
+    }
+    if (PQresultStatus(result) != PGRES_SINGLE_TUPLE) continue;
+    if (auto visited = visit(*rows); !visited) {
+      // To cancel would be to wait for a server that may not answer; with the connection the
+      // answer ends too.
+      impl_->handle.reset();
+      return visited;
     }
   }
-  return done;
 }
 
 Result<bool> Connection::wait_for(const std::string& channel, milliseconds time_max,

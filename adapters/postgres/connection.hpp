@@ -63,6 +63,14 @@ class Rows {
   std::shared_ptr<void> result_;
 };
 
+/// How long somebody waits for a server that does not answer: stopped, say, with its disk.
+struct Patience {
+  std::chrono::milliseconds answer_max{60'000};  ///< Of a statement, or of the next row of many.
+  /// Ends a wait within three seconds: what a server that is well has still to be told gets
+  /// through.
+  std::stop_token stop = {};
+};
+
 class Connection {
  public:
   /// @param url       "postgresql://user@host:5432/fleet?sslmode=verify-full", without a password
@@ -70,11 +78,13 @@ class Connection {
   /// @return invalid_value: no such URL, or one with a password; io_failed: the server cannot be
   ///         reached or refuses us. The sentence names the server and not the password.
   [[nodiscard]] static Result<std::unique_ptr<Connection>> open(const std::string& url,
-                                                                const std::string& password);
+                                                                const std::string& password,
+                                                                const Patience& patience = {});
   ~Connection();
 
   /// One statement with $1, $2 … The server keeps the plan of each text: there must be few.
-  /// @return or io_failed: the server is away, shut down, locked or out of room: later it may go;
+  /// @return or io_failed: the server is away, shut down, locked, out of room or does not answer:
+  ///         later it may go;
   ///         malformed: the server refuses the statement, in its words.
   Result<Rows> run(const std::string& statement, const std::vector<Parameter>& parameters = {});
 

@@ -225,7 +225,7 @@ IngestCounts ingest(const RecordConfig& record, const BrokerConfig& broker, cons
   keep_trying(
       "no batches are taken, and gateways keep what they have",
       [&]() -> Result<void> {
-        auto connection = TRY(open_record(record));
+        auto connection = TRY(open_record(record, {.stop = stop}));
         return ingester.serve(*connection);
       },
       report, stop);

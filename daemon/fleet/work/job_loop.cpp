@@ -207,7 +207,7 @@ int do_jobs(const JobLoop& loop, const Report& report, const std::stop_token& st
   keep_trying(
       "no jobs are done",
       [&]() -> Result<void> {
-        auto connection = TRY(open_record(loop.record));
+        auto connection = TRY(open_record(loop.record, {.stop = stop}));
         return jobs.work(*connection);
       },
       report, stop);

@@ -26,6 +26,7 @@ Result<std::vector<http::Token>> read_tokens(const HttpConfig& config) {
 Result<http::ServerOptions> server_options(const HttpConfig& config) {
   http::ServerOptions options{.address = config.address,
                               .port = config.port,
+                              .prompt_paths = {"/healthz", "/readyz"},
                               .origins = {config.origins.begin(), config.origins.end()}};
   options.access = {.tokens = TRY(read_tokens(config)),
                     .open_paths = {"/healthz", "/readyz"},

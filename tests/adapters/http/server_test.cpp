@@ -250,7 +250,7 @@ TEST_F(ServerTest, SlowAnswersDoNotKeepAProbeWaiting) {
     ++pages;
     return Response{.body = "page"};
   };
-  RunningServer server{handler, {.access = {.open_paths = {"/healthz"}}}};
+  RunningServer server{handler, {.prompt_paths = {"/healthz"}}};
   std::atomic<bool> is_over{false};
   std::vector<std::jthread> readers;
   for (int i = 0; i < 40; ++i) {

@@ -2,9 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <stop_token>
 #include <thread>
 
 #include "tests/support/postgres_server.hpp"
@@ -50,6 +54,73 @@ class PostgresConnection : public ::testing::Test {
   std::string url_;
   std::unique_ptr<Connection> connection_;
 };
+
+/// As a disk that hangs, or a machine that is paused: the kernel still acknowledges.
+class PausedBackend {
+ public:
+  explicit PausedBackend(Connection& connection)
+      : id_{static_cast<pid_t>(connection.run("SELECT pg_backend_pid()")->integer(0, 0))} {
+    ::kill(id_, SIGSTOP);
+  }
+  ~PausedBackend() { ::kill(id_, SIGCONT); }
+  PausedBackend(const PausedBackend&) = delete;
+  PausedBackend& operator=(const PausedBackend&) = delete;
+
+ private:
+  pid_t id_;
+};
+
+// Each kind of call, with what it has to send that fits into no buffer too.
+TEST_F(PostgresConnection, AServerThatDoesNotAnswerIsGivenUp) {
+  using std::chrono::milliseconds;
+  const std::string long_text(20'000'000, 'x');
+  const std::vector<std::function<Result<void>(Connection&)>> calls{
+      [](Connection& c) -> Result<void> {
+        TRY(c.run("SELECT 1"));
+        return {};
+      },
+      [&](Connection& c) -> Result<void> {
+        TRY(c.run("SELECT $1::text", {long_text}));
+        return {};
+      },
+      [](Connection& c) { return c.run_all("SELECT 1; SELECT 2"); },
+      [](Connection& c) { return c.transaction([] { return Result<void>{}; }); },
+      [](Connection& c) {
+        return c.for_each("SELECT 1", {}, [](const Rows&) { return Result<void>{}; });
+      }};
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    auto opened = Connection::open(url_, kPassword, {.answer_max = milliseconds{300}});
+    ASSERT_TRUE(opened.has_value());
+    const auto begin = std::chrono::steady_clock::now();
+    {
+      const PausedBackend paused{**opened};
+      const auto ended = calls[i](**opened);
+      ASSERT_FALSE(ended.has_value()) << i;
+      EXPECT_EQ(ended.error().code, ErrorCode::io_failed) << i;
+      EXPECT_THAT(ended.error().message, HasSubstr("does not answer")) << i;
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds{20}) << i;
+    EXPECT_TRUE(calls[i](**opened).has_value()) << i;  // on another connection
+  }
+}
+
+// Whoever ends waits no minute for it, and what a server that is well has to be told gets through.
+TEST_F(PostgresConnection, AStopEndsAWaitSoon) {
+  std::stop_source stop;
+  auto opened = Connection::open(url_, kPassword, {.stop = stop.get_token()});
+  ASSERT_TRUE(opened.has_value());
+  {
+    const PausedBackend paused{**opened};
+    const std::jthread later{[&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds{100});
+      stop.request_stop();
+    }};
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_FALSE((*opened)->run("SELECT 1").has_value());
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds{20});
+  }
+  EXPECT_TRUE((*opened)->run("SELECT 1").has_value());
+}
 
 TEST_F(PostgresConnection, ValuesComeBackAsTheyWent) {
   const std::string awkward = "a\\b\t'\"{},NULL \n\r \xC3\xA9 $1 \x01";
