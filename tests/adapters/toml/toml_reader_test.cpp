@@ -53,9 +53,9 @@ TEST(ParseToml, AKeyMayHaveAHundredParts) {
     }
   }
   const std::string dots(100'000, '.');
-  for (const std::string& fine :
-       {"x = \"" + dots + "\"\n", "x = '" + dots + "'\n", "# " + dots + "\nx = 1\n",
-        "x = \"\"\"\n" + dots + "\n\"\"\"\n", "x = '''" + dots + "'''\n", "x = \"a\\\"" + dots + "\"\n"}) {
+  for (const std::string& fine : {"x = \"" + dots + "\"\n", "x = '" + dots + "'\n",
+                                  "# " + dots + "\nx = 1\n", "x = \"\"\"\n" + dots + "\n\"\"\"\n",
+                                  "x = '''" + dots + "'''\n", "x = \"a\\\"" + dots + "\"\n"}) {
     EXPECT_EQ(refusal(fine), "read") << fine.substr(0, 20);
   }
   std::string numbers = "x = [";
