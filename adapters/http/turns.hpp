@@ -23,6 +23,10 @@ class Turns {
  public:
   using Clock = std::chrono::steady_clock;
 
+  /// @param pause_after  Answers that take longer are followed by a pause.
+  explicit Turns(Clock::duration pause_after = std::chrono::milliseconds{5})
+      : pause_after_(pause_after) {}
+
   /// A place in the queue, and the turn while it lasts; then the next one has it.
   class Turn {
    public:
@@ -53,19 +57,18 @@ class Turns {
       const auto begin = Clock::now();
       auto answered = answer();
       const auto end = Clock::now();
-      if (end - begin > kShort) turns_.free_at_ = end + (end - begin);
+      if (end - begin > turns_.pause_after_) turns_.free_at_ = end + (end - begin);
       return answered;
     }
 
    private:
-    static constexpr std::chrono::milliseconds kShort{5};
-
     Turns& turns_;
     boost::asio::steady_timer timer_;
   };
 
  private:
   std::deque<boost::asio::steady_timer*> waiting_;
+  const Clock::duration pause_after_;
   Clock::time_point free_at_{};
 };
 

@@ -44,7 +44,7 @@ class SessionTest : public ::testing::Test {
 
   boost::asio::io_context context_;
   SessionRules rules_;
-  Turns turns_;
+  Turns turns_{std::chrono::hours{1}};  // no pauses: the loop is only polled
   std::vector<std::string> handled_;
   Handler handler_ = [this](const Request& request) -> Response {
     handled_.push_back(request.path);
