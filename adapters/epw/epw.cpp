@@ -49,6 +49,7 @@ constexpr std::array<Field, kWeatherVariables.size()> kFields{{
     {15, 9999.0, 6},
     {9, 999999.0, 7},
 }};
+constexpr double kCodeMax = 1e6;  // of something missing: they are nines, 999999 at most
 constexpr std::size_t kHumidity = 1;
 /// More hours than these are no outliers, but a column in another unit or of another meaning.
 constexpr double kImpossibleShareMax = 0.05;
@@ -213,7 +214,7 @@ class EpwReader {
                        at_line(name_, line_.number) + "field " + std::to_string(field.place + 1) +
                            " " + in_quotes(fields_[field.place]) + " is not a number");
       }
-      if (*value < field.missing_from) put(field, *value, row.values);
+      if (*value < field.missing_from || *value > kCodeMax) put(field, *value, row.values);
     }
     rows_.push_back(row);
     return true;

@@ -169,6 +169,7 @@ TEST(Epw, WhatCannotBeMeasuredOnTheGroundIsNoValue) {
             {9, "0", &weather::WeatherHour::pressure_Pa, "pressure_Pa"},
             {9, "96.5", &weather::WeatherHour::pressure_Pa, "pressure_Pa"},
             {13, "-999", &weather::WeatherHour::ghi_W_m2, "ghi_W_m2"},
+            {13, "1e300", &weather::WeatherHour::ghi_W_m2, "ghi_W_m2"},
             {14, "5000", &weather::WeatherHour::dni_W_m2, "dni_W_m2"},
             {15, "-1e9", &weather::WeatherHour::dhi_W_m2, "dhi_W_m2"},
             {20, "400", &weather::WeatherHour::wind_dir_deg, "wind_dir_deg"},
