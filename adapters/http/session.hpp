@@ -110,16 +110,14 @@ class Session {
     request->body = std::move(parser.get().body());
     const bool keep_alive = parser.get().keep_alive();
     wait_for(Waiting::For::response);
-    const auto make_answer = [&] {
-      if (rules_.is_stopping) return Response{};  // the handler's owner may be gone
-      return dressed(*request, called(handler_, *request));
-    };
+    const auto make_answer = [&] { return dressed(*request, called(handler_, *request)); };
     Response answer;
     if (rules_.prompt_paths.contains(request->path)) {
       answer = make_answer();
     } else {
       Turns::Turn turn{turns_, stream_.get_executor()};
       co_await turn.come();
+      if (rules_.is_stopping) co_return false;  // the handler's owner may be gone
       if (rules_.worker == nullptr) {
         answer = turn.make(make_answer);
       } else {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "adapters/http/credentials.hpp"
 
 namespace recald::daemon {
@@ -38,8 +40,12 @@ Result<Question> question_for_site(const SiteConfig& site) {
                   .host = reachable_address(http.address),
                   .port = http.port};
   question.options.trusted_certificate = http.certificate_file;
-  if (!http.token_file.empty()) {
-    question.options.token = TRY(http::read_token_file(http.token_file));
+  const auto reader = std::ranges::find_if(http.tokens, [](const TokenConfig& token) {
+    return std::ranges::find(token.rights, "read") != token.rights.end();
+  });
+  const bool has_all = !http.token_file.empty();
+  if (has_all || reader != http.tokens.end()) {
+    question.options.token = TRY(http::read_token_file(has_all ? http.token_file : reader->file));
   }
   return question;
 }

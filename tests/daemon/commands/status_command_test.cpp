@@ -69,6 +69,16 @@ TEST_F(StatusCommand, BySiteFileWithItsToken) {
   EXPECT_THAT(outcome.out, HasSubstr("tower: ready"));
 }
 
+TEST_F(StatusCommand, BySiteFileWithATokenThatReads) {
+  RunningServer server{handler(), {.access = {.tokens = {{kToken, {http::Right::read}}}}}};
+  const auto outcome =
+      run({"status", site_with("[http]\nlisten = \"127.0.0.1:" + std::to_string(server.port()) +
+                               "\"\n[[http.token]]\nfile = \"none\"\nrights = \"push\"\n"
+                               "[[http.token]]\nfile = \"" +
+                               token_file() + "\"\nrights = [\"read\"]\n")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
 TEST_F(StatusCommand, ATokenIsAskedFor) {
   RunningServer server{handler(), {.access = {.tokens = {{kToken}}}}};
   const auto without = run({"status", "--url", url(server)});

@@ -52,6 +52,33 @@ class RunCommand : public recald::testing::PolledSite {
     auto query = store->prepare("SELECT count(DISTINCT value) FROM sample");
     return query && query->step().value_or(false) ? query->integer(0) : 0;
   }
+
+  /// A meter "chw" whose readings are pushed.
+  void add_pushed_meter() const {
+    recald::testing::write_text(folder_ / "site.toml",
+                                recald::testing::read_text(folder_ / "site.toml") +
+                                    "[[meter]]\nid = \"chw\"\nsource = \"http\"\n"
+                                    "utility = \"chilled_water\"\n"
+                                    "[http]\nlisten = \"127.0.0.1:0\"\n");
+  }
+  /// Pushes the reading of two hours ago. @param more  Further members of the body.
+  /// @return the whole response; empty: it does not listen yet.
+  [[nodiscard]] std::string push(const std::string& value, const std::string& more = "") const {
+    const std::string text = what_was_said();
+    const std::size_t port = text.rfind(" port=");
+    if (port == std::string::npos) return "";
+    const std::string body = R"({"meter":"chw","unit":"kWh",)" + more + R"("readings":[{"time":")" +
+                             metering::to_string(std::chrono::floor<std::chrono::hours>(
+                                 std::chrono::system_clock::now() - std::chrono::hours{2})) +
+                             R"(","value":)" + value + "}]}";
+    boost::asio::ip::tcp::iostream server{"127.0.0.1",
+                                          text.substr(port + 6, text.find('\n', port) - port - 6)};
+    server << "POST /api/v1/readings HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
+              "Content-Type: application/json\r\nContent-Length: "
+           << body.size() << "\r\n\r\n"
+           << body << std::flush;
+    return {std::istreambuf_iterator{server}, {}};
+  }
 };
 
 TEST_F(RunCommand, PollsIsKilledGoesOnAndEnds) {
@@ -256,34 +283,14 @@ TEST_F(WithoutAStore, WhileItIsOpenedItEndsWhenItIsToldTo) {
 }
 
 TEST_F(WithoutAStore, PushedReadingsAreTakenOnceThereIsOne) {
-  recald::testing::write_text(folder_ / "site.toml",
-                              recald::testing::read_text(folder_ / "site.toml") +
-                                  "[[meter]]\nid = \"chw\"\nsource = \"http\"\n"
-                                  "utility = \"chilled_water\"\n"
-                                  "[http]\nlisten = \"127.0.0.1:0\"\n");
-  const auto post = [&]() -> std::string {
-    const std::string text = what_was_said();
-    const std::size_t port = text.rfind(" port=");
-    if (port == std::string::npos) return "";
-    const std::string body = R"({"meter":"chw","unit":"kWh","readings":[{"time":")" +
-                             metering::to_string(std::chrono::floor<std::chrono::hours>(
-                                 std::chrono::system_clock::now() - std::chrono::hours{2})) +
-                             R"(","value":1.5}]})";
-    boost::asio::ip::tcp::iostream server{"127.0.0.1",
-                                          text.substr(port + 6, text.find('\n', port) - port - 6)};
-    server << "POST /api/v1/readings HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
-              "Content-Type: application/json\r\nContent-Length: "
-           << body.size() << "\r\n\r\n"
-           << body << std::flush;
-    return {std::istreambuf_iterator{server}, {}};
-  };
+  add_pushed_meter();
   BackgroundProcess daemon{command("run"), said()};
   ASSERT_TRUE(eventually([&] { return said_so("event=no_store"); })) << what_was_said();
-  const std::string refused = post();
+  const std::string refused = push("1.5");
   EXPECT_THAT(refused, HasSubstr(" 503 "));
   EXPECT_THAT(refused, HasSubstr("Retry-After: 60"));
   std::filesystem::remove(lock());
-  EXPECT_TRUE(eventually([&] { return post().find(" 200 ") != std::string::npos; }))
+  EXPECT_TRUE(eventually([&] { return push("1.5").find(" 200 ") != std::string::npos; }))
       << what_was_said();
   EXPECT_EQ(daemon.end(SIGKILL), -SIGKILL);
   const auto store = stores::open_to_read(folder_ / "site.db").value();
@@ -292,31 +299,11 @@ TEST_F(WithoutAStore, PushedReadingsAreTakenOnceThereIsOne) {
 
 // A sentence that somebody sends must not pass for one of ours.
 TEST_F(RunCommand, WhatOthersWroteIsOneLineOfTheLog) {
-  recald::testing::write_text(folder_ / "site.toml",
-                              recald::testing::read_text(folder_ / "site.toml") +
-                                  "[[meter]]\nid = \"chw\"\nsource = \"http\"\n"
-                                  "utility = \"chilled_water\"\n"
-                                  "[http]\nlisten = \"127.0.0.1:0\"\n");
+  add_pushed_meter();
   BackgroundProcess daemon{command("run"), said()};
   ASSERT_TRUE(eventually([&] { return std::filesystem::exists(said()) && said_so(" port="); }));
-  const std::string text = what_was_said();
-  const std::size_t port = text.rfind(" port=");
-  const auto post = [&](const std::string& value, const std::string& reason) -> std::string {
-    const std::string body = R"({"meter":"chw","unit":"kWh",)" + reason +
-                             R"("readings":[{"time":")" +
-                             metering::to_string(std::chrono::floor<std::chrono::hours>(
-                                 std::chrono::system_clock::now() - std::chrono::hours{2})) +
-                             R"(","value":)" + value + "}]}";
-    boost::asio::ip::tcp::iostream server{"127.0.0.1",
-                                          text.substr(port + 6, text.find('\n', port) - port - 6)};
-    server << "POST /api/v1/readings HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
-              "Content-Type: application/json\r\nContent-Length: "
-           << body.size() << "\r\n\r\n"
-           << body << std::flush;
-    return {std::istreambuf_iterator{server}, {}};
-  };
-  EXPECT_THAT(post("1.5", ""), HasSubstr(" 200 "));
-  EXPECT_THAT(post("2.5", R"("reason":"wrong\n2026-01-01T00:00:00.000Z error event=store_damaged)"
+  EXPECT_THAT(push("1.5"), HasSubstr(" 200 "));
+  EXPECT_THAT(push("2.5", R"("reason":"wrong\n2026-01-01T00:00:00.000Z error event=store_damaged)"
                           R"( \u001b[31m\u202e\u0000","author":"a\u0007",)"),
               HasSubstr(" 200 "));
   EXPECT_EQ(daemon.end(SIGTERM), 0);
