@@ -37,10 +37,11 @@ class ServingDaemon {
     return ask("GET " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   }
   [[nodiscard]] std::string post(const std::string& path, const std::string& json) const {
-    return ask("POST " + path +
-               " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\n"
-               "Content-Length: " +
-               std::to_string(json.size()) + "\r\n\r\n" + json);
+    return ask(
+        "POST " + path +
+        " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\n"
+        "Content-Length: " +
+        std::to_string(json.size()) + "\r\n\r\n" + json);
   }
 
   void signal(int number) const { process_.signal(number); }
