@@ -17,7 +17,7 @@ std::vector<std::string> try_alerts(const SiteConfig& site, const Console& conso
   const AlertMessage message = trial_message(site, now);
   std::vector<std::string> problems;
   for (const AlertDestination& destination : site.alerts.destinations) {
-    const std::string words = destination_words(destination);
+    const std::string words = destination_of(destination).words;
     if (const auto sent = deliver(destination, message, {}); !sent) {
       problems.push_back(fmt::format("{}: {}: {}", file, words, sent.error().message));
     } else if (!is_quiet) {

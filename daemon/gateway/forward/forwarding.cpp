@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "adapters/http/url.hpp"
-#include "adapters/system/files/sha256.hpp"
 #include "adapters/system/worker_thread.hpp"
 #include "daemon/gateway/forward/mqtt_messages.hpp"
 #include "daemon/gateway/forward/record_sink.hpp"
 #include "daemon/gateway/forward/sinks.hpp"
+#include "daemon/gateway/forward/store_outbox.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
 
 namespace recald::daemon {
@@ -19,17 +19,10 @@ namespace {
 constexpr std::chrono::milliseconds kGoodbyeMax{1'000};
 constexpr std::chrono::minutes kRefusalsEvery{10};
 
-/// An address may hold a secret, so it is not part of the name as it is.
-std::string hashed(std::string_view kind, const std::string& what) {
-  system::Sha256 digest;
-  digest.add(what);
-  return fmt::format("{} {}", kind, digest.hex().substr(0, 16));
-}
-
 Destination destination_of(const RemoteWriteConfig& config) {
   const bool is_influx = config.protocol == WriteProtocol::influx;
   const auto url = http::parse_url(config.url);
-  return {.id = hashed(is_influx ? "influx" : "prometheus", config.url),
+  return {.id = destination_id(is_influx ? "influx" : "prometheus", config.url),
           .words = fmt::format("{} at {}", is_influx ? "InfluxDB" : "Prometheus",
                                url ? url->authority() : "?")};
 }
@@ -39,7 +32,7 @@ std::string broker_words(const MqttConfig& config) {
 }
 
 Destination destination_of(const MqttConfig& config) {
-  return {.id = hashed("mqtt", config.broker.where() + " " + config.topic),
+  return {.id = destination_id("mqtt", config.broker.where() + " " + config.topic),
           .words = broker_words(config),
           .wants_events = true};
 }
@@ -251,11 +244,12 @@ void Forwarding::add_forwarder(Destination destination, std::unique_ptr<Sink> si
   const bool is_there = std::ranges::any_of(
       forwarders_, [&](const auto& one) { return one->destination().id == destination.id; });
   if (is_there) return;
+  auto outbox = std::make_unique<StoreOutbox>(StoreOutbox::Ports{ports_.loop, ports_.store},
+                                              std::move(destination), notify_);
   forwarders_.push_back(
-      std::make_unique<Forwarder>(Forwarder::Ports{ports_.loop, ports_.store},
-                                  std::make_unique<system::WorkerThread>(ports_.loop),
-                                  std::move(destination), std::move(sink), notify_, ports_.rules));
-  forwarders_.back()->start();
+      std::make_unique<Forwarder>(ports_.loop, std::make_unique<system::WorkerThread>(ports_.loop),
+                                  std::move(outbox), std::move(sink), ports_.rules));
+  forwarders_.back()->poll_within(std::chrono::milliseconds{0});
 }
 
 std::vector<DestinationStatus> Forwarding::status() const {

@@ -1,4 +1,5 @@
-/// Where intervals, months, events and results are sent: a broker, a database or a fleet's record.
+/// Where intervals, months, events and results are sent: a broker, a database, a fleet's record, a
+/// mail server or a webhook.
 #pragma once
 
 #include <chrono>
@@ -21,7 +22,8 @@ struct OutgoingBatch {
   bool is_history = false;  ///< Entries of `history_after`, which are numbered by themselves.
   /// Which numbering these positions are of (outbox_identity); 0: the destination has none.
   std::int64_t identity = 0;
-  bool is_first = false;  ///< The destination has taken nothing of this numbering yet.
+  bool is_first = false;        ///< The destination has taken nothing of this numbering yet.
+  metering::Instant time = {};  ///< When it was made.
 
   [[nodiscard]] std::size_t size() const { return entries.size() + events.size() + results.size(); }
 };

@@ -110,7 +110,6 @@ class Service {
         worker_(loop_),
         checker_(loop_),
         looker_(loop_),
-        messenger_(loop_),
         expecter_(loop_),
         options_(options),
         jobs_(
@@ -131,7 +130,8 @@ class Service {
                 [this](StoreEvent event) { gateway_->note(std::move(event)); }),
         watchdog_(loop_, [this] { return store_->events(1).has_value(); }),
         alerts_(
-            {loop_, *store_, messenger_}, shared_config(), site_.calendar, deliver,
+            {loop_, *store_, [this] { return std::make_unique<system::WorkerThread>(loop_); }},
+            shared_config(), site_.calendar, deliver,
             [this](StoreEvent event) { gateway_->note(std::move(event)); }, std::move(notified)),
         forwarding_(
             {loop_, *store_, running_.missing.empty()}, shared_config(), site_.calendar,
@@ -193,7 +193,6 @@ class Service {
     weather_wait_.start();
     load_watch_.start();
     report_facts();
-    alerts_.start();
     keep_up();
     if (!running_.missing.empty()) stand_in();
     loop_.post([this] { watchdog_.ready(); });
@@ -435,10 +434,9 @@ class Service {
   boost::asio::posix::stream_descriptor signal_file_{context_, signals_.descriptor()};
   asio::AsioLoop loop_;
   system::WorkerThread worker_;
-  system::WorkerThread checker_;    ///< For backups.
-  system::WorkerThread looker_;     ///< For weather checks.
-  system::WorkerThread messenger_;  ///< For alerts.
-  system::WorkerThread expecter_;   ///< For what the model expects of the meters.
+  system::WorkerThread checker_;   ///< For backups.
+  system::WorkerThread looker_;    ///< For weather checks.
+  system::WorkerThread expecter_;  ///< For what the model expects of the meters.
   ServiceOptions options_;
   JobRunner jobs_;  ///< Tells its work to stop before the worker waits for it.
   WeatherWait weather_wait_;

@@ -58,13 +58,12 @@ class AlertsTest : public ::testing::Test {
   void begin(const std::string& alerts) { begin(site_with(alerts)); }
   void begin(const SiteConfig& site, Alerts::Notified told = {}) {
     alerts_ = std::make_unique<Alerts>(
-        Alerts::Ports{loop_, failing_, worker_}, std::make_shared<const SiteConfig>(site),
+        Alerts::Ports{loop_, failing_, make_worker_}, std::make_shared<const SiteConfig>(site),
         metering::LocalCalendar::open("Europe/Berlin").value(),
         [this](const AlertDestination& to, const AlertMessage& message, const std::stop_token&) {
           return take(to, message);
         },
         [this](StoreEvent event) { note(std::move(event)); }, std::move(told));
-    alerts_->start();
   }
 
   Result<void> take(const AlertDestination& to, const AlertMessage& message) {
@@ -102,7 +101,9 @@ class AlertsTest : public ::testing::Test {
   sqlite::SqliteStore store_ = sqlite::SqliteStore::open(folder_ / "site.db").value();
   FailingStore failing_{store_};
   VirtualLoop loop_{kNoon};
-  VirtualWorker worker_{loop_, seconds{2}};
+  std::function<std::unique_ptr<Worker>()> make_worker_ = [this] {
+    return std::make_unique<VirtualWorker>(loop_, seconds{2});
+  };
   std::unique_ptr<Alerts> alerts_;
   std::vector<StoreEvent> waiting_;
   std::vector<AlertMessage> mails_;
@@ -168,6 +169,18 @@ TEST_F(AlertsTest, AServerThatIsDownIsTriedAgainAndHoldsUpNobody) {
   loop_.run_for(hours{1});
   EXPECT_THAT(mails_, SizeIs(1));
   EXPECT_THAT(hooks_, SizeIs(1));
+}
+
+TEST_F(AlertsTest, AServerThatHangsHoldsUpNobodyElse) {
+  seconds length = minutes{10};  // of the webhook's, whose worker is made first
+  make_worker_ = [this, &length] {
+    return std::make_unique<VirtualWorker>(loop_, std::exchange(length, seconds{2}));
+  };
+  begin(std::string{kMail} + kHook);
+  happens("meter_silent");
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(hooks_, IsEmpty());
+  EXPECT_THAT(mails_, SizeIs(1));
 }
 
 // An alert that a server will never take must not hold up those behind it.
@@ -337,13 +350,13 @@ TEST_F(AlertsTest, WhatWasKeptInMemoryIsNotToldAgainFromTheStore) {
   ASSERT_TRUE(found.commit({.events = store_.events_after(0, 100).value()}).has_value());
   auto told = alerts_->take_notified();
   alerts_ = std::make_unique<Alerts>(
-      Alerts::Ports{loop_, found, worker_}, std::make_shared<const SiteConfig>(site_with(kMail)),
+      Alerts::Ports{loop_, found, make_worker_},
+      std::make_shared<const SiteConfig>(site_with(kMail)),
       metering::LocalCalendar::open("Europe/Berlin").value(),
       [this](const AlertDestination& to, const AlertMessage& message, const std::stop_token&) {
         return take(to, message);
       },
       [](const StoreEvent&) {}, std::move(told));
-  alerts_->start();
   loop_.run_for(hours{1});
   EXPECT_THAT(mails_, SizeIs(1));
 }
@@ -372,10 +385,10 @@ TEST_F(AlertsTest, OnlyWhatWasChosen) {
 
 TEST(AlertNames, HoldNoSecret) {
   const WebhookConfig hook{.url = "https://hooks.example.org/services/secret"};
-  EXPECT_THAT(cursor_name(hook), Not(HasSubstr("secret")));
-  EXPECT_THAT(destination_words(hook), Not(HasSubstr("secret")));
-  EXPECT_NE(cursor_name(hook),
-            cursor_name(WebhookConfig{.url = "https://hooks.example.org/other"}));
+  EXPECT_THAT(destination_of(hook).id, Not(HasSubstr("secret")));
+  EXPECT_THAT(destination_of(hook).words, Not(HasSubstr("secret")));
+  EXPECT_NE(destination_of(hook).id,
+            destination_of(WebhookConfig{.url = "https://hooks.example.org/other"}).id);
 }
 
 }  // namespace

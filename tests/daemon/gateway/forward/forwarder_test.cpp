@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "adapters/sqlite/sqlite_store.hpp"
+#include "daemon/gateway/forward/store_outbox.hpp"
 #include "tests/support/failing_store.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/virtual_loop.hpp"
@@ -69,20 +70,22 @@ class ScriptedSink final : public Sink {
 
 class ForwarderTest : public ::testing::Test {
  protected:
-  void begin(const ForwardRules& rules = {}) {
+  void begin(const ForwardRules& rules = {}, std::int64_t waiting_max = kWaitingMax) {
     ASSERT_TRUE(store_.keep_outbox_for({"other"}).has_value());
     forwarder_.reset();
-    forwarder_ = std::make_unique<Forwarder>(
-        Forwarder::Ports{loop_, failing_}, std::make_unique<VirtualWorker>(loop_, seconds{1}),
+    auto outbox = std::make_unique<StoreOutbox>(
+        StoreOutbox::Ports{loop_, failing_},
         Destination{.id = "other",
                     .words = "the other",
                     .wants_events = true,
                     .wants_results = true,
                     .history = history_},
-        std::make_unique<ScriptedSink>(other_),
         [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); },
-        rules);
-    forwarder_->start();
+        waiting_max);
+    forwarder_ = std::make_unique<Forwarder>(
+        loop_, std::make_unique<VirtualWorker>(loop_, seconds{1}), std::move(outbox),
+        std::make_unique<ScriptedSink>(other_), rules);
+    forwarder_->poll_within(milliseconds{0});
   }
   void store(int from, int until) {
     StoreBatch batch;
@@ -290,7 +293,7 @@ TEST_F(ForwarderTest, WhileTheStoreRefusesNothingIsLeftOut) {
 
 TEST_F(ForwarderTest, TheOldestAreLeftOutWhereFarTooManyWait) {
   other_.is_down = true;
-  begin({.waiting_max = 50});
+  begin({}, 50);
   store(0, 60);
   loop_.run_for(hours{1});
   EXPECT_EQ(forwarder_->status().waiting, 50);

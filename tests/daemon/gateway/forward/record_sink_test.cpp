@@ -14,6 +14,7 @@
 #include "adapters/sqlite/sqlite_store.hpp"
 #include "daemon/gateway/forward/forwarder.hpp"
 #include "daemon/gateway/forward/outbox_identity.hpp"
+#include "daemon/gateway/forward/store_outbox.hpp"
 #include "tests/support/mosquitto.hpp"
 #include "tests/support/played_record.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -57,7 +58,8 @@ class RecordSinkTest : public ::testing::Test {
   }
 
   /// A gateway starts: a connection of its own, and what the store has.
-  void begin(const RecordRules& rules = kPatient, const ForwardRules& forward = {}) {
+  void begin(const RecordRules& rules = kPatient, const ForwardRules& forward = {},
+             std::int64_t waiting_max = kWaitingMax) {
     end();
     ASSERT_TRUE(store_.keep_outbox_for({"fleet"}).has_value());
     BrokerConfig broker;
@@ -72,18 +74,20 @@ class RecordSinkTest : public ::testing::Test {
                 })
                 .value();
     ASSERT_TRUE(is_connected());
-    forwarder_ = std::make_unique<Forwarder>(
-        Forwarder::Ports{loop_, store_}, std::make_unique<VirtualWorker>(loop_, seconds{1}),
+    auto outbox = std::make_unique<StoreOutbox>(
+        StoreOutbox::Ports{loop_, store_},
         Destination{.id = "fleet",
                     .words = "the fleet",
                     .wants_events = true,
                     .wants_results = true,
                     .has_identity = true,
                     .history = history_},
-        make_record_sink("depot", link_, rules),
         [this](const StoreEvent& event) { told_.push_back(event.kind + ": " + event.text); },
-        forward);
-    forwarder_->start();
+        waiting_max);
+    forwarder_ = std::make_unique<Forwarder>(
+        loop_, std::make_unique<VirtualWorker>(loop_, seconds{1}), std::move(outbox),
+        make_record_sink("depot", link_, rules), forward);
+    forwarder_->poll_within(milliseconds{0});
   }
   void end() {
     forwarder_.reset();
@@ -433,7 +437,7 @@ TEST_F(RecordSinkTest, TwoRecordsThatAnswerInTurnsAreNotToldEverythingAllTheTime
 TEST_F(RecordSinkTest, WhereTooManyWaitTheStoreIsToldFromItsBeginning) {
   PlayedRecord record{broker_.port(), Mood::away};
   history_ = {{"main", seconds{900}}};
-  begin(kHasty, {.waiting_max = 50});
+  begin(kHasty, {}, 50);
   store(0, 60);
   loop_.run_for(hours{1});
   EXPECT_THAT(told_, ::testing::Contains(HasSubstr("forward_anew: the fleet has not taken anything "
