@@ -1,6 +1,7 @@
 /// A message of MQTT, what a broker is, and what a session does by itself.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -31,6 +32,11 @@ struct Message {
 
   bool operator==(const Message&) const = default;
 };
+
+/// What it takes in memory: an empty one too, for queues with a limit.
+[[nodiscard]] inline std::size_t bytes_of(const Message& message) {
+  return sizeof(Message) + message.topic.size() + message.payload.size();
+}
 
 /// What the connection does by itself whenever it is made again.
 struct Session {

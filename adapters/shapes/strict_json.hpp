@@ -14,6 +14,7 @@
 
 #include "adapters/shapes/shape_json.hpp"
 #include "core/result.hpp"
+#include "core/text/limited.hpp"
 
 namespace recald::shapes {
 
@@ -26,6 +27,9 @@ class StrictReader {
   static constexpr std::int64_t kNumber_max = std::numeric_limits<std::int64_t>::max();
   /// Of what is sent: sums of some of them are numbers too.
   static constexpr std::int64_t kSent_max = std::int64_t{1} << 60;
+  /// Of a text, in bytes; what is longer is shortened, since a refused batch would hold up those
+  /// behind it.
+  static constexpr std::size_t kText_max = 16'000;
   // A sender whose clock is wrong is read too: anything that a database can hold, year 1 to 9999.
   static constexpr std::int64_t kFirst_s = -62'135'596'800;
   static constexpr std::int64_t kLast_s = 253'402'300'799;
@@ -64,7 +68,7 @@ class StrictReader {
     } else if constexpr (std::is_same_v<T, Instant>) {
       return Instant{std::chrono::seconds{integer(json, key, kFirst_s, kLast_s)}};
     } else if constexpr (std::is_same_v<T, std::string>) {
-      if (json.is_string()) return json.get<std::string>();
+      if (json.is_string()) return limited(json.get_ref<const std::string&>(), kText_max);
       refuse(key, "is no text");
       return {};
     } else if constexpr (std::is_same_v<T, metering::Month>) {

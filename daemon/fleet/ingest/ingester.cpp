@@ -34,7 +34,8 @@ constexpr std::size_t kAtOnce = 32;  ///< Batches between two rounds of telling 
 constexpr std::size_t kWaiting_bytes_max = 64 * 1024 * 1024;
 constexpr std::chrono::minutes kReportRefusalsEvery{10};
 constexpr std::size_t kReason_max = 300;
-constexpr int kReasons_max = 20;  // of a site, in that time
+constexpr int kReasons_max = 20;              // of a site, in that time
+constexpr std::size_t kRefused_max = 10'000;  // of all: a topic may name any site
 
 /// What has arrived and is not committed. It is no promise to anybody: what does not fit is
 /// dropped, and its gateway sends it again.
@@ -42,8 +43,8 @@ class Arrivals {
  public:
   void push(const mqtt::Message& message) {
     const std::scoped_lock lock{mutex_};
-    if (bytes_ + message.payload.size() > kWaiting_bytes_max) return;
-    bytes_ += message.payload.size();
+    if (bytes_ + bytes_of(message) > kWaiting_bytes_max) return;
+    bytes_ += bytes_of(message);
     waiting_.push_back(message);
     changed_.notify_one();
   }
@@ -67,7 +68,7 @@ class Arrivals {
                       [&] { return !waiting_.empty() || is_new_connection_; });
     std::vector<mqtt::Message> taken;
     while (!waiting_.empty() && taken.size() < kAtOnce) {
-      bytes_ -= waiting_.front().payload.size();
+      bytes_ -= bytes_of(waiting_.front());
       taken.push_back(std::move(waiting_.front()));
       waiting_.pop_front();
     }
@@ -205,7 +206,8 @@ class Ingester {
     std::erase_if(reason, [](char c) { return c >= '0' && c <= '9'; });
     const auto of_site =
         std::ranges::count_if(refused_, [&](const auto& one) { return one.first.first == site; });
-    if (of_site >= kReasons_max || !refused_.try_emplace({site, reason}, moment).second) return;
+    if (of_site >= kReasons_max || refused_.size() >= kRefused_max) return;
+    if (!refused_.try_emplace({site, reason}, moment).second) return;
     notify_(why);
   }
 

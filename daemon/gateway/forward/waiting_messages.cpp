@@ -6,10 +6,6 @@
 
 namespace recald::daemon {
 
-std::size_t WaitingMessages::bytes_of(const mqtt::Message& message) {
-  return sizeof(mqtt::Message) + message.topic.size() + message.payload.size();
-}
-
 void WaitingMessages::drop(std::list<mqtt::Message>::iterator one) {
   bytes_ -= bytes_of(*one);
   waiting_.erase(one);

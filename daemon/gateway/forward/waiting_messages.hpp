@@ -28,7 +28,6 @@ class WaitingMessages {
   [[nodiscard]] std::int64_t dropped() const;
 
  private:
-  static std::size_t bytes_of(const mqtt::Message& message);
   void drop(std::list<mqtt::Message>::iterator one);
 
   mutable std::mutex mutex_;

@@ -344,6 +344,24 @@ TEST(RecordBatch, EveryFieldIsNeeded) {
   EXPECT_EQ(missing, 7 + 3 + 15 + 3 + 8 + 10);
 }
 
+// Whatever a gateway writes into a text, the record is not filled by it; a result's document alone
+// is as long as its message.
+TEST(RecordBatch, NoTextButADocumentIsLongerThanItsLimit) {
+  const json good = json::parse(to_json(sample_batch()));
+  const json flat = good.flatten();
+  int texts = 0;
+  for (const auto& [place, value] : flat.items()) {
+    if (!value.is_string() || place.ends_with("/document")) continue;
+    json changed = good;
+    changed[json::json_pointer{place}] = std::string(100'000, 'x');
+    ++texts;
+    if (const auto read = parse_batch(changed.dump())) {
+      EXPECT_LT(to_json(*read).size(), 20'000u) << place;
+    }
+  }
+  EXPECT_GT(texts, 10);
+}
+
 TEST(RecordBatch, AWatermarkIsTheSameAgain) {
   const Watermark watermark{
       .outbox = 123, .until = {.entries = 500, .events = 3, .results = 1}, .answers = 17};
