@@ -102,8 +102,9 @@ Result<void> assess(MonthlyModel& whole_model, const WholePeriod& whole,
   const Eigen::VectorXd& mean = result.calibration.posterior_mean;
   const std::vector<double> after =
       evaluate(whole_model, {mean.data(), static_cast<std::size_t>(mean.size())});
-  const auto draws = TRY(design::run_model(whole_model, result.parameters,
-                                           result.calibration.thinned.theta, context.executor));
+  const auto draws = TRY(design::run_model(
+      whole_model, result.parameters, result.calibration.thinned.theta, context.executor,
+      calibration::of_runs(context, calibration::Progress::Stage::predicting)));
   scale_followed(result);
   auto forecasts = TRY(forecast_given_data(result, whole, draws));
 

@@ -72,6 +72,13 @@ std::optional<Emulator> emulator_of(const MonthlyModel& prototype, const DesignR
 
 }  // namespace
 
+design::RunObserver of_runs(const RunContext& context, Progress::Stage stage) {
+  if (!context.observer) return {};
+  return [&context, stage](int done, int total) {
+    return context.observer({stage, 0, done, total});
+  };
+}
+
 Result<DesignRuns> run_design(const MonthlyModel& prototype, const CalibrationProblem& problem,
                               int runs, const RunContext& context) {
   if (runs < kDesignRunsMin) {
@@ -82,11 +89,8 @@ Result<DesignRuns> run_design(const MonthlyModel& prototype, const CalibrationPr
   Rng rng(context.seed, streams::kDesign.first);
   DesignRuns design;
   design.theta = design::latin_hypercube(problem.parameters, runs, rng);
-  const design::RunObserver observer = [&context](int done, int total) {
-    return !context.observer || context.observer({Progress::Stage::design, 0, done, total});
-  };
-  design.outputs = TRY(
-      design::run_model(prototype, problem.parameters, design.theta, context.executor, observer));
+  design.outputs = TRY(design::run_model(prototype, problem.parameters, design.theta,
+                                         context.executor, of_runs(context)));
   return design;
 }
 

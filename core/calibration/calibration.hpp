@@ -23,6 +23,7 @@
 #include "core/calibration/posterior/problem.hpp"
 #include "core/calibration/predictive.hpp"
 #include "core/calibration/sampling.hpp"
+#include "core/design/model_runs.hpp"
 #include "core/model/monthly_model.hpp"
 #include "core/result.hpp"
 
@@ -70,6 +71,11 @@ struct Calibration {
   Findings findings;  ///< Everything to report in words; empty if there is nothing to remark.
   std::uint64_t seed;
 };
+
+/// For `design::run_model`: progress of a stage, and whether it goes on.
+/// @param context  Outlives the observer.
+[[nodiscard]] design::RunObserver of_runs(const RunContext& context,
+                                          Progress::Stage stage = Progress::Stage::design);
 
 /// Runs the model over a fresh Latin hypercube.
 [[nodiscard]] Result<DesignRuns> run_design(const MonthlyModel& prototype,

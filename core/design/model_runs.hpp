@@ -21,6 +21,7 @@ using RunObserver = std::function<bool(int done, int total)>;
 /// @param prototype   Cloned, never evaluated itself.
 /// @param parameters  (q) only to name the values in an error.
 /// @param theta       (runs x q) in the parameters' own units.
+/// @param observer    Empty: cannot be stopped.
 /// @param executor    Runs blocks of rows side by side; the result does not depend on it.
 /// @return (runs x output_count * month_count), each row output-major as `MonthlyModel` writes it;
 /// or
@@ -30,7 +31,7 @@ using RunObserver = std::function<bool(int done, int total)>;
                                                 std::span<const Parameter> parameters,
                                                 const Eigen::MatrixXd& theta,
                                                 const ForEachIndex& executor,
-                                                const RunObserver& observer = {});
+                                                const RunObserver& observer);
 
 /// The error both this and the posterior give for a NaN or infinity in `outputs`, or success.
 [[nodiscard]] Result<void> check_finite(std::span<const Parameter> parameters,

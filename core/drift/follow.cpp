@@ -240,8 +240,8 @@ Result<SiteDrift> follow(const FollowedSite& followed,
       calibration::normalise_design(design.outputs, learning.outputs, followed.learning_months));
 
   // A posterior that is carried on is evaluated a million times.
-  const auto runs = TRY(
-      design::run_model(followed.model, followed.site.parameters, design.theta, context.executor));
+  const auto runs = TRY(design::run_model(followed.model, followed.site.parameters, design.theta,
+                                          context.executor, calibration::of_runs(context)));
   const auto emulator = TRY(calibration::emulate(design.theta, runs, followed.model.output_count(),
                                                  followed.model.month_count()));
 

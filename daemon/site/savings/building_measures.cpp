@@ -202,13 +202,15 @@ std::string unknown_of(const SiteCalibration& result, const Columns& columns,
       prior.min(), prior.max());
 }
 
+constexpr auto kBuildingsRun = calibration::Progress::Stage::predicting;
+
 class BuildingMeasures final : public MeasuredModel {
  public:
   BuildingMeasures(const FinishedCalibration& finished, const std::vector<Measure>& measures,
-                   const ForEachIndex& executor)
+                   const calibration::RunContext& context)
       : result_{finished.calibration},
         measures_{measures},
-        executor_{executor},
+        context_{context},
         columns_{columns_of(finished.modelled.site.config, result_, measures)},
         lights_{lights_known(*finished.modelled.site.config.building, result_.profile)} {
     const auto lights = columns_.find(kLights);
@@ -237,7 +239,8 @@ class BuildingMeasures final : public MeasuredModel {
     return limits_of(result_, columns_.calibrated);
   }
   [[nodiscard]] Result<Eigen::MatrixXd> run(const Eigen::MatrixXd& buildings) const override {
-    return design::run_model(*model_, columns_.parameters, buildings, executor_);
+    return design::run_model(*model_, columns_.parameters, buildings, context_.executor,
+                             calibration::of_runs(context_, kBuildingsRun));
   }
   [[nodiscard]] Result<Eigen::MatrixXd> run_with(const Eigen::MatrixXd& buildings,
                                                  const Eigen::MatrixXd& /*before*/,
@@ -261,7 +264,7 @@ class BuildingMeasures final : public MeasuredModel {
  private:
   const SiteCalibration& result_;
   const std::vector<Measure>& measures_;
-  const ForEachIndex& executor_;
+  const calibration::RunContext& context_;
   Columns columns_;
   LightsKnown lights_;
   std::unique_ptr<MonthlyModel> model_;
@@ -269,10 +272,10 @@ class BuildingMeasures final : public MeasuredModel {
 
 }  // namespace
 
-Result<std::unique_ptr<MeasuredModel>> make_building_measures(const FinishedCalibration& finished,
-                                                              const std::vector<Measure>& measures,
-                                                              const ForEachIndex& executor) {
-  auto model = std::make_unique<BuildingMeasures>(finished, measures, executor);
+Result<std::unique_ptr<MeasuredModel>> make_building_measures(
+    const FinishedCalibration& finished, const std::vector<Measure>& measures,
+    const calibration::RunContext& context) {
+  auto model = std::make_unique<BuildingMeasures>(finished, measures, context);
   TRY(model->make_model(finished.modelled));
   return model;
 }

@@ -113,11 +113,13 @@ std::vector<Index> keep_moved(const regression::DesignData& both,
   return moved;
 }
 
+constexpr auto kMeasuresRun = calibration::Progress::Stage::predicting;
+
 class RunsMeasures final : public MeasuredModel {
  public:
   RunsMeasures(const FinishedCalibration& finished, const std::vector<Measure>& measures,
-               const ForEachIndex& executor)
-      : result_{finished.calibration}, measures_{measures}, executor_{executor} {
+               const calibration::RunContext& context)
+      : result_{finished.calibration}, measures_{measures}, context_{context} {
     const auto& all = result_.design->folder.parameters;
     for (std::size_t j = 0; j < all.size(); ++j) {
       const auto place = std::ranges::find(result_.parameters, all[j].name, &Parameter::name);
@@ -164,7 +166,8 @@ class RunsMeasures final : public MeasuredModel {
   [[nodiscard]] Result<MatrixXd> run(const MatrixXd& buildings) const override {
     MatrixXd all = in_order_of_design(buildings);
     for (const Index j : held_) all.col(j).setConstant(parameter(j).prior.mean());
-    return design::run_model(*plain_, result_.design->folder.parameters, all, executor_);
+    return design::run_model(*plain_, result_.design->folder.parameters, all, context_.executor,
+                             calibration::of_runs(context_, kMeasuresRun));
   }
 
   [[nodiscard]] Result<MatrixXd> run_with(const MatrixXd& buildings, const MatrixXd& before,
@@ -184,7 +187,8 @@ class RunsMeasures final : public MeasuredModel {
       }
     }
     const auto saved =
-        TRY(design::run_model(*difference.model, difference.columns, columns, executor_));
+        TRY(design::run_model(*difference.model, difference.columns, columns, context_.executor,
+                              calibration::of_runs(context_, kMeasuresRun)));
     MatrixXd after = before;
     const auto months = std::ssize(months_);
     for (std::size_t k = 0; k < difference.outputs.size(); ++k) {
@@ -260,7 +264,7 @@ class RunsMeasures final : public MeasuredModel {
 
   const SiteCalibration& result_;
   const std::vector<Measure>& measures_;
-  const ForEachIndex& executor_;
+  const calibration::RunContext& context_;
   std::vector<std::string> months_;  ///< Of the calibration.
   std::vector<Index> free_;          ///< Calibrated parameters, by their place in the design …
   std::vector<Index> held_;          ///< … and the others.
@@ -272,8 +276,8 @@ class RunsMeasures final : public MeasuredModel {
 
 Result<std::unique_ptr<MeasuredModel>> make_runs_measures(const FinishedCalibration& finished,
                                                           const std::vector<Measure>& measures,
-                                                          const ForEachIndex& executor) {
-  auto model = std::make_unique<RunsMeasures>(finished, measures, executor);
+                                                          const calibration::RunContext& context) {
+  auto model = std::make_unique<RunsMeasures>(finished, measures, context);
   TRY(model->fit(finished.modelled));
   return model;
 }

@@ -37,8 +37,8 @@ Eigen::MatrixXd runs(int count, std::uint64_t seed) {
 }
 
 Result<Emulator> emulate_bent(const Eigen::MatrixXd& theta) {
-  return emulate(theta, *design::run_model(Bent{}, kParameters, theta, for_each_index_serially), 2,
-                 2);
+  return emulate(theta, *design::run_model(Bent{}, kParameters, theta, for_each_index_serially, {}),
+                 2, 2);
 }
 
 TEST(Emulator, IsExactWhereTheModelIsAPolynomial) {
@@ -57,8 +57,8 @@ TEST(Emulator, KnowsItsError) {
   auto made = emulate_bent(runs(100, 1));
   ASSERT_TRUE(made.has_value());
   const Eigen::MatrixXd fresh = runs(400, 2);
-  const auto truth = design::run_model(Bent{}, kParameters, fresh, for_each_index_serially);
-  const auto said = design::run_model(made->model, kParameters, fresh, for_each_index_serially);
+  const auto truth = design::run_model(Bent{}, kParameters, fresh, for_each_index_serially, {});
+  const auto said = design::run_model(made->model, kParameters, fresh, for_each_index_serially, {});
   for (const Eigen::Index row : {2, 3}) {
     const double found = std::sqrt((*said - *truth).col(row).squaredNorm() / 400.0);
     EXPECT_GT(made->error_sd(row), 0.0);

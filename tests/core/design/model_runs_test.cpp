@@ -49,7 +49,7 @@ TEST(ModelRuns, EachRowIsTheModelThere) {
   for (const int count : {0, 1, 5, 100}) {
     for (const ForEachIndex& executor :
          {ForEachIndex(for_each_index_serially), ForEachIndex(recald::testing::in_threads)}) {
-      const auto outputs = run_model(StepModel(1e9), parameters(), rows(count), executor);
+      const auto outputs = run_model(StepModel(1e9), parameters(), rows(count), executor, {});
       ASSERT_TRUE(outputs.has_value());
       ASSERT_EQ(outputs->rows(), count);
       for (Eigen::Index i = 0; i < count; ++i) {
@@ -63,7 +63,8 @@ TEST(ModelRuns, EachRowIsTheModelThere) {
 }
 
 TEST(ModelRuns, AValueThatIsNotFiniteNamesItsPlaceAndItsParameters) {
-  const auto outputs = run_model(StepModel(41.0), parameters(), rows(100), for_each_index_serially);
+  const auto outputs =
+      run_model(StepModel(41.0), parameters(), rows(100), for_each_index_serially, {});
   ASSERT_FALSE(outputs.has_value());
   EXPECT_EQ(outputs.error().code, ErrorCode::not_finite);
   EXPECT_THAT(outputs.error().message, HasSubstr("output 2, month 3"));

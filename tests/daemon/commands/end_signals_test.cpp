@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "daemon/commands/interrupt.hpp"
+#include "tests/daemon/depot_versions.hpp"
 #include "tests/daemon/depot_year.hpp"
 #include "tests/support/background_process.hpp"
 #include "tests/support/sample_design.hpp"
@@ -36,6 +37,19 @@ double worked_s(pid_t process) {
   double ticks = 0.0;
   fields >> ticks;
   return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+/// Sends the signal and waits for the end. @param more_s  Of processor time, at most.
+int ended_by(BackgroundProcess& process, int signal, double more_s) {
+  const double worked_before_s = worked_s(process.pid());
+  process.signal(signal);
+  while (!process.has_ended()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    if (worked_s(process.pid()) - worked_before_s < more_s) continue;
+    ADD_FAILURE() << "it works on";
+    return process.end(SIGKILL);
+  }
+  return process.wait();
 }
 
 class LongCommands : public ::testing::TestWithParam<LongCommand> {
@@ -74,18 +88,9 @@ class LongCommands : public ::testing::TestWithParam<LongCommand> {
 
   /// Sends the signal once the command is at work, and waits for its end. All of its work would
   /// take the processor far longer than it may have now.
-  int end_at_work(BackgroundProcess& process, int signal) {
-    constexpr double kFarFromDone_s = 10.0;
+  static int end_at_work(BackgroundProcess& process, int signal) {
     EXPECT_TRUE(eventually([&] { return worked_s(process.pid()) > 0.7; }));
-    const double worked_before_s = worked_s(process.pid());
-    process.signal(signal);
-    while (!process.has_ended()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds{20});
-      if (worked_s(process.pid()) - worked_before_s < kFarFromDone_s) continue;
-      ADD_FAILURE() << "it works on";
-      return process.end(SIGKILL);
-    }
-    return process.wait();
+    return ended_by(process, signal, 10.0);
   }
 
   recald::testing::TemporaryFolder folder_;
@@ -120,6 +125,44 @@ INSTANTIATE_TEST_SUITE_P(
         LongCommand{"diagnose", {"diagnose", "SITE", "--out", "OUT"}},
         LongCommand{"drift",
                     {"drift", "SITE", "--learn", "6", "--particles", "100000", "--out", "OUT"}}),
+    [](const auto& made) { return std::string{made.param.name}; });
+
+class EveryStage : public LongCommands {};
+
+// A stage that nobody can stop is found by a signal in the middle of it, so each command gets some
+// at moments all over its work, with a model that has an effect in force.
+TEST_P(EveryStage, EndsSoonAfterASignal) {
+  constexpr double kSoon_s = 2.0;  // of two threads: a second
+  std::vector<metering::Month> months;
+  for (unsigned m = 1; m <= 12; ++m)
+    months.push_back(std::chrono::year{2021} / std::chrono::month{m});
+  recald::testing::put_in_force(recald::testing::half_missing_setback(months),
+                                folder_ / "site.toml");
+  double moment_s = 0.2;
+  for (bool has_ended = false; !has_ended; moment_s *= 1.7) {
+    SCOPED_TRACE(moment_s);
+    BackgroundProcess process{command(), said()};
+    while (!(has_ended = process.has_ended()) && worked_s(process.pid()) < moment_s) {
+      std::this_thread::sleep_for(std::chrono::milliseconds{5});
+    }
+    if (has_ended) {
+      EXPECT_EQ(process.wait(), 0) << recald::testing::read_text(said());
+    } else {
+      const int status = ended_by(process, SIGTERM, kSoon_s);
+      EXPECT_TRUE(status == 143 || status == 0) << status;  // it may have been at its end
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(moment_s, 1.0) << "it was over before much of it could be stopped";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfWhole, EveryStage,
+    ::testing::Values(LongCommand{"calibrate",
+                                  {"calibrate", "SITE", "--model", "hourly", "--sampler", "dram",
+                                   "--draws", "1400", "--burn-in", "400", "--chains", "2",
+                                   "--design-runs", "50", "--out", "OUT"}},
+                      LongCommand{"drift", {"drift", "SITE", "--learn", "6", "--out", "OUT"}}),
     [](const auto& made) { return std::string{made.param.name}; });
 
 // More than a pipe's buffer of lines, and a reader that has gone: `recald replay … | head`.
