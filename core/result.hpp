@@ -22,7 +22,7 @@ enum class ErrorCode {
   not_enough_data,  ///< Too few readings, months or draws for the answer asked for.
   not_finite,       ///< NaN or infinity where a number is needed.
   not_positive_definite,  ///< A covariance that has no Cholesky factor.
-  out_of_range,           ///< A value outside what the component supports (an instant after 2037).
+  out_of_range,           ///< A value outside what the component supports (an instant after 2100).
   unsupported,            ///< Understood, but this version does not do it.
   cancelled,              ///< The caller asked to stop.
 };

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <charconv>
 #include <cstdio>
 #include <stdexcept>
 
+#include "core/metering/zone_rule.hpp"
 #include "core/text/ascii.hpp"
 #include "core/text/nearest.hpp"
 
@@ -23,7 +23,8 @@ constexpr Instant kEarliestInstant =
     sys_days{Day{std::chrono::year{1970}, std::chrono::month{1}, std::chrono::day{1}}};
 
 /// The transitions of a zone over the years we accept. A zone has about two per year, so we search
-/// a flat vector instead of using the library's lookup, which builds strings on each call.
+/// a flat vector instead of using the library's lookup, which builds strings on each call. The
+/// library ends with the last transition that the file lists, in 2037 or long before.
 std::vector<OffsetSpan> offsets_of(const date::time_zone& zone) {
   std::vector<OffsetSpan> offsets;
   Instant t = kEarliestInstant;
@@ -32,6 +33,12 @@ std::vector<OffsetSpan> offsets_of(const date::time_zone& zone) {
     const Instant end = std::min(info.end, kLatestInstant);
     offsets.push_back({{t, end}, info.offset});
     t = end;
+  }
+  const Instant last_listed = offsets.back().span.begin;
+  for (const OffsetChange& change : zone_rule_changes(zone_rule_of(zone.name()))) {
+    if (change.at <= last_listed || change.at >= kLatestInstant) continue;
+    offsets.back().span.end = change.at;
+    offsets.push_back({{change.at, kLatestInstant}, change.utc_offset});
   }
   return offsets;
 }
@@ -78,12 +85,12 @@ Result<LocalCalendar> LocalCalendar::open(std::string_view zone_name) {
   }
 }
 
+/// Outside the years we accept, where a wrong clock may be, the nearest offset.
 const OffsetSpan& LocalCalendar::offset_span(Instant t) const {
-  assert(kEarliestInstant <= t && t < kLatestInstant);
   const auto after = std::upper_bound(
       offsets_.begin(), offsets_.end(), t,
       [](Instant instant, const OffsetSpan& entry) { return instant < entry.span.begin; });
-  return *std::prev(after);
+  return after == offsets_.begin() ? *after : *std::prev(after);
 }
 
 Instant LocalCalendar::first_instant(Day day, int minute_of_day) const {
@@ -166,12 +173,15 @@ Result<Month> parse_month(std::string_view text) {
   const bool shaped = text.size() == 7 && text[4] == '-';
   const int year = shaped ? parse_digits(text.substr(0, 4)) : -1;
   const int month = shaped ? parse_digits(text.substr(5, 2)) : -1;
-  if (year < 1971 || year > 2037 || month < 1 || month > 12) {
-    return failure(
-        ErrorCode::malformed,
-        "'" + std::string{text} + "' is not a month between 1971-01 and 2037-12; write YYYY-MM");
+  const std::chrono::year_month written = std::chrono::year{year} / month;
+  constexpr Month kFirst = kFirstKnownYear / std::chrono::January;
+  constexpr Month kLast = kLastKnownYear / std::chrono::December;
+  if (month < 1 || month > 12 || written < kFirst || written > kLast) {
+    return failure(ErrorCode::malformed, "'" + std::string{text} + "' is not a month between " +
+                                             to_string(kFirst) + " and " + to_string(kLast) +
+                                             "; write YYYY-MM");
   }
-  return std::chrono::year{year} / month;
+  return written;
 }
 
 Result<Day> parse_day(std::string_view text) {
@@ -179,9 +189,8 @@ Result<Day> parse_day(std::string_view text) {
   const auto month = shaped ? parse_month(text.substr(0, 7)) : Result<Month>{};
   const int day = shaped ? parse_digits(text.substr(8, 2)) : -1;
   if (!shaped || !month || day < 1 || day > days_in(*month)) {
-    return failure(
-        ErrorCode::malformed,
-        "'" + std::string{text} + "' is not a date between 1971 and 2037; write YYYY-MM-DD");
+    return failure(ErrorCode::malformed, "'" + std::string{text} + "' is not a date of " +
+                                             std::string{kKnownYears} + "; write YYYY-MM-DD");
   }
   return *month / day;
 }

@@ -48,9 +48,14 @@ struct LocalTime {
   int minute_of_day;  ///< 0…1439, as on the wall clock.
 };
 
-/// First instant that recald refuses: the zone library lists transitions only up to 2037.
+/// The years that recald knows: what lies outside is a mistake. A counter of seconds that is full
+/// at 32 bits says 2106, one that was never set 1970.
+inline constexpr std::chrono::year kFirstKnownYear{1971};
+inline constexpr std::chrono::year kLastKnownYear{2100};
+inline constexpr std::string_view kKnownYears = "1971 to 2100";
+/// First instant that recald refuses.
 inline constexpr Instant kLatestInstant =
-    std::chrono::sys_days{Day{std::chrono::year{2038}, std::chrono::month{1}, std::chrono::day{1}}};
+    std::chrono::sys_days{(kLastKnownYear + std::chrono::years{1}) / std::chrono::January / 1};
 
 /// Offset of local time from UTC, constant on [span.begin, span.end).
 struct OffsetSpan {
@@ -58,7 +63,8 @@ struct OffsetSpan {
   std::chrono::seconds utc_offset;  ///< Local minus UTC.
 };
 
-/// The calendar of one IANA time zone. Cheap to copy; lookups do not allocate after `open`.
+/// The calendar of one IANA time zone. After the last change that the zone's file lists, the rule
+/// at the file's end goes on. Cheap to copy; lookups do not allocate after `open`.
 class LocalCalendar {
  public:
   /// @return the calendar, or not_found if the system's zone files lack `zone_name`.
@@ -66,7 +72,7 @@ class LocalCalendar {
 
   /// [first instant of day 1, first instant of the next month's day 1).
   /// A midnight that does not exist starts at the first existing instant, a repeated one at its
-  /// first occurrence. @pre the month lies in 1971…2037.
+  /// first occurrence. @pre the month lies in the known years.
   [[nodiscard]] TimeSpan month_span(Month month) const;
   [[nodiscard]] TimeSpan day_span(Day day) const;
 
@@ -87,7 +93,7 @@ class LocalCalendar {
   [[nodiscard]] const OffsetSpan& offset_span(Instant t) const;
 
   std::string zone_name_;
-  std::vector<OffsetSpan> offsets_;  ///< Ordered and without gaps over 1970…2037.
+  std::vector<OffsetSpan> offsets_;  ///< Ordered and without gaps from 1970 to `kLatestInstant`.
 };
 
 /// Days of the month, 28…31.

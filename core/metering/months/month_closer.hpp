@@ -47,7 +47,7 @@ struct MeterCounts {
   std::int64_t late = 0;        ///< For a closed month that was reopened.
   std::int64_t too_late = 0;    ///< For a month no longer kept: refused.
   std::int64_t off_grid = 0;    ///< The start is not an interval start of the meter: refused.
-  std::int64_t stray = 0;       ///< Far ahead and not confirmed, or beyond 2037: refused.
+  std::int64_t stray = 0;  ///< Far ahead and not confirmed, or outside the known years: refused.
 };
 
 /// Collects readings per meter and passes on each month once it is complete, and again with a

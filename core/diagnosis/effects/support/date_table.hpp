@@ -11,8 +11,8 @@ namespace recald::diagnosis {
 /// Marked days of all years that recald accepts.
 class DateTable {
  public:
-  static constexpr int kFirstYear = 1971;
-  static constexpr int kLastYear = 2037;
+  static constexpr int kFirstYear = static_cast<int>(metering::kFirstKnownYear);
+  static constexpr int kLastYear = static_cast<int>(metering::kLastKnownYear);
 
   void mark(metering::Day first, metering::Day last) {
     for (auto day = std::chrono::sys_days{first}; day <= std::chrono::sys_days{last};
