@@ -204,8 +204,8 @@ Result<Instant> parse_timestamp(std::string_view text) {
   const Instant instant =
       Instant{std::chrono::sys_days{date}} + seconds{hour * 3600 + minute * 60 + second} - *offset;
   if (year < 1971 || instant >= metering::kLatestInstant) {
-    return failure(ErrorCode::out_of_range,
-                   "timestamp '" + std::string{text} + "' lies outside 1971 to 2037");
+    return failure(ErrorCode::out_of_range, "timestamp '" + std::string{text} + "' lies outside " +
+                                                std::string{metering::kKnownYears});
   }
   return instant;
 }

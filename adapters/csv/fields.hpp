@@ -57,7 +57,7 @@ std::size_t parse_plain_decimal(std::string_view text, double& value);
 
 /// ISO 8601 with Z or an offset: 2016-03-13T02:15:00-06:00. Seconds may be absent, a space may
 /// replace the T, 24:00 is the end of the day. @return malformed or out_of_range (outside
-/// 1971…2037).
+/// the known years).
 [[nodiscard]] Result<metering::Instant> parse_timestamp(std::string_view text);
 
 }  // namespace recald::csv

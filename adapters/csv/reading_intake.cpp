@@ -158,7 +158,8 @@ bool ReadingIntake::check_order(IntakeMeter& meter, const Row& row, Instant star
   const MeterInFile& shown = meter.report.shown;
   if (start < Instant{} + std::chrono::days{366} ||
       start + shown.interval > metering::kLatestInstant) {
-    refuse(row.line, "the interval lies outside 1971 to 2037", row.text, &meter);
+    refuse(row.line, "the interval lies outside " + std::string{metering::kKnownYears}, row.text,
+           &meter);
     return false;
   }
   if ((start.time_since_epoch() - shown.phase) % shown.interval != seconds{0}) {

@@ -14,7 +14,7 @@ using metering::Instant;
 constexpr auto kLock = 0x7265'6361;
 
 constexpr std::chrono::year kYear_first{2000};
-constexpr std::chrono::year kYear_last{2037};
+constexpr std::chrono::year kYear_last = metering::kLastKnownYear;
 
 /// Months are text, "2024-03", so that they are the same in every place.
 constexpr auto kTables = R"(

@@ -25,7 +25,7 @@ inline constexpr int kSchemaVersion = 1;
                                            const metering::TimeSpan& span);
 
 /// "interval_2024_03", where intervals that begin then are. What a wrong clock stamps before 2000
-/// or after 2037 has a partition of its own, which is always there.
+/// or after the known years has a partition of its own, which is always there.
 [[nodiscard]] std::string partition_of(metering::Instant start);
 
 }  // namespace recald::record

@@ -210,7 +210,8 @@ class FeedBuilder {
     if (!since || *since < 366 * 86'400 ||
         *since >= metering::kLatestInstant.time_since_epoch().count() - 86'400) {
       return failure(ErrorCode::malformed, "an interval starts at " + csv::in_quotes(start) +
-                                               ", which is no second of 1971 to 2037");
+                                               ", which is no second of " +
+                                               std::string{metering::kKnownYears});
     }
     const std::string_view text = text_of(node, "value");
     const auto value = csv::parse_number(text);

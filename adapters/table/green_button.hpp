@@ -37,7 +37,8 @@ struct Feed {
 };
 
 /// Reads a whole feed, up to four million readings.
-/// @return malformed: not an ESPI feed, a reading that is not a number, one outside 1971…2037.
+/// @return malformed: not an ESPI feed, a reading that is not a number, one outside the known
+/// years.
 [[nodiscard]] Result<Feed> parse_green_button(csv::ByteSource bytes);
 
 /// As above, for a file; messages name it.

@@ -137,9 +137,12 @@ class TableSniffer {
     const double begin = counts.front();
     const double end = counts.back();
     const double step = (end - begin) / static_cast<double>(counts.size() - 1);
-    const bool is_excel = begin > 32'000.0 && end < 51'000.0 && step > 0.0 && step < 1.01;
-    const bool is_unix = (begin > 6e8 && end < 2.1e9 && step >= 60.0) ||
-                         (begin > 6e11 && end < 2.1e12 && step >= 6e4);
+    constexpr double kLatest_s =
+        static_cast<double>(metering::kLatestInstant.time_since_epoch().count());
+    constexpr double kLatestDay = 25'569.0 + kLatest_s / 86'400.0;  // since the end of 1899
+    const bool is_excel = begin > 32'000.0 && end < kLatestDay && step > 0.0 && step < 1.01;
+    const bool is_unix = (begin > 6e8 && end < kLatest_s && step >= 60.0) ||
+                         (begin > 6e11 && end < 1e3 * kLatest_s && step >= 6e4);
     if (!is_excel && !is_unix) return false;
     time_ = column;
     data_ = first;

@@ -195,8 +195,8 @@ Error no_stamp(std::string_view text, TimeFormat format) {
 
 Result<WrittenTime> in_range(const WrittenTime& time, std::string_view text) {
   if (time.clock < Instant{} + days{367} || time.clock >= metering::kLatestInstant - days{1}) {
-    return failure(ErrorCode::out_of_range,
-                   "timestamp " + csv::in_quotes(text) + " lies outside 1971 to 2037");
+    return failure(ErrorCode::out_of_range, "timestamp " + csv::in_quotes(text) + " lies outside " +
+                                                std::string{metering::kKnownYears});
   }
   return time;
 }
@@ -210,16 +210,17 @@ Result<WrittenTime> parse_count(std::string_view text, TimeFormat format) {
     constexpr double kEpoch_days = 25'569.0;  // of 1970-01-01
     if (*count < kEpoch_days || *count > 80'000.0) {
       return failure(ErrorCode::out_of_range, "timestamp " + csv::in_quotes(text) +
-                                                  " is no spreadsheet day of 1971 to 2037");
+                                                  " is no spreadsheet day of " +
+                                                  std::string{metering::kKnownYears});
     }
     const auto since = static_cast<std::int64_t>(std::llround((*count - kEpoch_days) * 86'400.0));
     return in_range({.clock = Instant{seconds{since}}}, text);
   }
   constexpr double kFirstMilliseconds = 1e11;  // read as seconds, this would be the year 5138
   const double whole_s = *count >= kFirstMilliseconds ? *count / 1000.0 : *count;
-  if (whole_s < 0.0 || whole_s > 4e9) {
-    return failure(ErrorCode::out_of_range,
-                   "timestamp " + csv::in_quotes(text) + " lies outside 1971 to 2037");
+  if (whole_s < 0.0 || whole_s > 5e9) {
+    return failure(ErrorCode::out_of_range, "timestamp " + csv::in_quotes(text) + " lies outside " +
+                                                std::string{metering::kKnownYears});
   }
   return in_range(
       {.clock = Instant{seconds{static_cast<std::int64_t>(whole_s)}}, .utc_offset = seconds{0}},

@@ -34,7 +34,7 @@ struct WrittenTime {
   bool has_time = true;  ///< False: only a date.
 };
 
-/// @return the time, or malformed; out_of_range outside 1971…2037.
+/// @return the time, or malformed; out_of_range outside the known years.
 [[nodiscard]] Result<WrittenTime> parse_stamp(std::string_view text, TimeFormat format);
 
 /// A time of day on its own: "14:15", "2:15:00 PM", "24:00".

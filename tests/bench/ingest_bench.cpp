@@ -53,7 +53,7 @@ std::uint64_t write_file(const std::filesystem::path& path, std::uint64_t readin
       ++written;
     }
     t += std::chrono::minutes{15};
-    // Instants end with 2037, so the long file ends after 28 years, 9.7 million readings.
+    // Instants end with the known years.
     if (t >= kLatestInstant - std::chrono::days{1}) break;
   }
   std::fclose(file);

@@ -107,7 +107,7 @@ TEST_F(Cli, DaysThatAreNoneAreWrongUsage) {
   const Outcome no_day = run({"replay", site(), "--from", "2021-02-30"});
   EXPECT_EQ(no_day.exit_code, kUsage);
   EXPECT_EQ(no_day.err,
-            "recald: --from: '2021-02-30' is not a date between 1971 and 2037; write YYYY-MM-DD\n");
+            "recald: --from: '2021-02-30' is not a date of 1971 to 2100; write YYYY-MM-DD\n");
   EXPECT_EQ(run({"replay", site(), "--to", "February"}).exit_code, kUsage);
   const Outcome backwards = run({"replay", site(), "--from", "2021-03-01", "--to", "2021-02-01"});
   EXPECT_EQ(backwards.exit_code, kUsage);

@@ -42,7 +42,8 @@ void require_sound(const Read& read, const ReadingsReport& report) {
     require((reading.start.time_since_epoch() - meter.phase) % meter.interval ==
                 std::chrono::seconds{0},
             "a reading is on its grid");
-    require(reading.start + meter.interval <= metering::kLatestInstant, "a reading before 2038");
+    require(reading.start + meter.interval <= metering::kLatestInstant,
+            "a reading of the known years");
   }
   for (const csv::LineIssue& issue : report.issues.listed) require_sentence(issue.reason);
   require(report.issues.total >= report.issues.listed.size(), "issues are counted");

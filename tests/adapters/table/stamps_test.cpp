@@ -58,7 +58,7 @@ TEST(Stamps, SpreadsheetDaysAndSeconds) {
 TEST(Stamps, WhatIsNoneSaysSo) {
   for (const char* text : {"", "soon", "31/02/2024 10:00", "13/13/2024 10:00", "09/03/2024 25:00",
                            "09/03/2024 10:61", "09/03/2024 10:00 x", "9/3/224 10:00",
-                           "09/03/1969 10:00", "09/03/2038 10:00", "09/03/2024 13:00 PM"}) {
+                           "09/03/1969 10:00", "09/03/2101 10:00", "09/03/2024 13:00 PM"}) {
     EXPECT_FALSE(parse_stamp(text, TimeFormat::day_first).has_value()) << text;
   }
   EXPECT_EQ(parse_stamp("x", TimeFormat::day_first).error().message,

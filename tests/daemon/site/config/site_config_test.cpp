@@ -208,7 +208,7 @@ const Mistake kSiteMistakes[] = {
     {"IntervalThatDividesNoHour", "interval = \"15m\"", "interval = \"20m\"", "20m",
      "[site] 'interval' must be 1m, 5m, 10m, 15m, 30m or 60m (\"1h\")"},
     {"BadHoliday", "2021-12-25", "25.12.2021", "holidays",
-     "[site] 'holidays': '25.12.2021' is not a date between 1971 and 2037; write YYYY-MM-DD"},
+     "[site] 'holidays': '25.12.2021' is not a date of 1971 to 2100; write YYYY-MM-DD"},
     {"CapitalsInId", "\"depot\"", "\"Depot\"", "Depot",
      "[site] 'id' is \"Depot\"; use 1 to 40 of a-z, 0-9, - and _"},
     {"UnknownFillRule", "watermark = \"72h\"", "fill = \"zero\"", "fill",
@@ -245,7 +245,7 @@ const Mistake kSiteMistakes[] = {
     {"PeriodWithoutEnd", ", to = \"2021-12\"", "", "validation",
      "[period.validation] needs 'from' and 'to', each a month such as \"2021-01\""},
     {"BadMonth", "from = \"2021-10\"", "from = \"10/2021\"", "10/2021",
-     "[period.validation] 'from': '10/2021' is not a month between 1971-01 and 2037-12; write "
+     "[period.validation] 'from': '10/2021' is not a month between 1971-01 and 2100-12; write "
      "YYYY-MM"},
     {"MissingCalibrationPeriod", "calibration = { from = \"2021-01\", to = \"2021-09\" }\n", "",
      "[period]", "[period] 'calibration' is missing: { from = \"2021-01\", to = \"2022-12\" }"},
