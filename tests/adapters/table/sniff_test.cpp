@@ -59,12 +59,18 @@ TEST(Sniff, DaysThatFollowEachOtherDecide) {
 }
 
 TEST(Sniff, CountedDaysAndSecondsAreTimes) {
-  std::vector<std::vector<std::string>> cells{{"Date", "kW"}};
-  for (int i = 0; i < 20; ++i) cells.push_back({std::to_string(45'292.0 + i / 24.0), "5"});
-  EXPECT_EQ(guess(cells).shape.time_format, TimeFormat::excel);
-  for (int i = 0; i < 20; ++i) cells[i + 1][0] = std::to_string(1'704'067'200 + 900 * i);
-  EXPECT_EQ(guess(cells).shape.time_format, TimeFormat::unix);
-  EXPECT_TRUE(guess(cells).has_offsets);
+  // From 1998, 2024, 2045 and 2100.
+  for (const std::int64_t begin_s :
+       {883'612'800LL, 1'704'067'200LL, 2'366'841'600LL, 4'102'444'800LL}) {
+    SCOPED_TRACE(begin_s);
+    std::vector<std::vector<std::string>> cells{{"Date", "kW"}};
+    const double begin_days = 25'569.0 + static_cast<double>(begin_s) / 86'400.0;
+    for (int i = 0; i < 20; ++i) cells.push_back({std::to_string(begin_days + i / 24.0), "5"});
+    EXPECT_EQ(guess(cells).shape.time_format, TimeFormat::excel);
+    for (int i = 0; i < 20; ++i) cells[i + 1][0] = std::to_string(begin_s + 900 * i);
+    EXPECT_EQ(guess(cells).shape.time_format, TimeFormat::unix);
+    EXPECT_TRUE(guess(cells).has_offsets);
+  }
 }
 
 TEST(Sniff, TheDecimalSignIsWhatSomeValueShows) {
