@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/text/limited.hpp"
-#include "daemon/gateway/ingest/plausible_time.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -20,8 +19,13 @@ constexpr std::size_t kNotifiedMax = 1'000;
 /// How much of the past a new destination receives. The recovery of a store at the start is in it.
 constexpr std::chrono::hours kNotifiedAtFirst{1};
 constexpr int kEventsOfThePast = 1'000;
+/// There was no recald before: such a stamp is of a clock that was not set.
+constexpr Instant kFirstRecald = std::chrono::sys_days{std::chrono::year{2026} / 1 / 1};
 constexpr int kPagesMax = 20;                // of events at a look
 constexpr std::chrono::days kCountedFor{1};  // as the store counts repeated events
+
+/// Whether a stamp says how long ago something was. A trial's clock may show any time.
+bool has_age(Instant stamp, Instant now) { return stamp >= kFirstRecald || now < kFirstRecald; }
 
 bool is_same(const StoreEvent& a, const StoreEvent& b) {
   return a.kind == b.kind && a.subject == b.subject && a.time == b.time;
@@ -66,7 +70,7 @@ Result<std::int64_t> AlertOutbox::position(Instant now) {
   const auto past = TRY(store_.events(kEventsOfThePast));
   std::int64_t position = 0;
   for (const StoreEvent& event : past) {
-    const bool is_old = is_plausible_time(event.time) && event.time < now - kNotifiedAtFirst;
+    const bool is_old = has_age(event.time, now) && event.time < now - kNotifiedAtFirst;
     if (is_old) position = std::max(position, event.number);
   }
   // Now, so that what this destination misses is still new to it after a restart.
@@ -111,7 +115,7 @@ bool AlertOutbox::is_alert(const StoreEvent& event, Instant now) const {
       std::ranges::find(site_->alerts.about, event.kind) != site_->alerts.about.end();
   // What happened before the clock was set has no age.
   const Instant at = event.last.value_or(event.time);
-  return is_chosen && (!is_plausible_time(at) || at > now - kForget);
+  return is_chosen && (!has_age(at, now) || at > now - kForget);
 }
 
 bool AlertOutbox::was_notified(const StoreEvent& event) const {

@@ -66,6 +66,7 @@ struct DestinationStatus {
 
 struct GatewayStatus {
   bool clock_ok = false;
+  std::string clock_doubt = {};  ///< Why it is not.
   CommitHealth store;
   std::string no_store;  ///< Why readings are only kept in memory; empty: they are not.
   std::size_t waiting_intervals = 0;      ///< Waiting for the store.

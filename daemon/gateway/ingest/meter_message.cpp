@@ -8,7 +8,6 @@
 
 #include "adapters/csv/fields.hpp"
 #include "daemon/gateway/ingest/json_depth.hpp"
-#include "daemon/gateway/ingest/plausible_time.hpp"
 #include "daemon/gateway/ingest/sent_values.hpp"
 
 namespace recald::daemon {
@@ -82,7 +81,7 @@ class Message {
       const json* const part = part_at(document_, wanted.time_pointer);
       measured = part == nullptr ? std::nullopt : time_of(*part);
       if (!measured) return refused(wanted, "has no time under '" + wanted.time_pointer + "'");
-      if (!is_plausible_time(*measured) || *measured > now_ + kClocksDiffer) {
+      if (*measured < now_ - kSentOldest || *measured > now_ + kClocksDiffer) {
         return refused(wanted, "is stamped " + metering::to_string(*measured) +
                                    ", but the clock says " + metering::to_string(now_));
       }

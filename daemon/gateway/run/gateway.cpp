@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/absent.hpp"
-#include "daemon/gateway/ingest/plausible_time.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -18,7 +17,6 @@ using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds kClockWasSet{2'000};
 constexpr std::size_t kHeldMax = 100'000;  // a day of sixty meters at one poll a minute
 constexpr hours kMonthsEvery{1};
 constexpr hours kRefusedReadingsEvery{1};
@@ -57,7 +55,8 @@ Gateway::Gateway(const metering::LocalCalendar& calendar, const SiteConfig& site
             note_committed(batch, counts);
           },
           [this](const std::string& why) { report_refusal(why); }),
-      keeper_(ports_.store, calendar, site.closing, ports_.time_zone_release) {}
+      keeper_(ports_.store, calendar, site.closing, ports_.time_zone_release),
+      clock_(ports.clock) {}
 
 Gateway::~Gateway() = default;
 
@@ -71,6 +70,12 @@ Result<std::unique_ptr<Gateway>> Gateway::open(const SiteConfig& site,
   gateway->gather_feeds();
   gateway->watch_meters_of(site);
   gateway->watch_sensors_of(site);
+  std::optional<Instant> newest;
+  for (const MeterProgress* const progress : gateway->all_progress()) {
+    if (progress->last_interval)
+      newest = std::max(newest, std::optional{progress->last_interval->start});
+  }
+  gateway->clock_ = ClockWatch{ports.clock, newest};
   return gateway;
 }
 
@@ -301,26 +306,27 @@ MeterProgress* Gateway::find_progress(std::uint32_t number) {
   return nullptr;
 }
 
-/// Stamps are good from the first plausible time on, until the clock is set again.
+/// Stamps are good from the first believed time on, until the clock is set again.
 void Gateway::watch_clock(const Moment& now) {
-  const milliseconds offset = now.wall.time_since_epoch() - now.monotonic;
-  const milliseconds moved =
-      wall_minus_monotonic_ ? offset - *wall_minus_monotonic_ : milliseconds{0};
-  wall_minus_monotonic_ = offset;
-  // Once settled it is not checked again: a clock that loses its server keeps running.
-  const bool is_settled = clock_ok_ || !ports_.is_clock_settling || !ports_.is_clock_settling();
-  const bool was_ok = std::exchange(clock_ok_, is_settled && is_plausible_time(now.instant()));
-  if (!was_ok) {
-    if (clock_ok_) release_held(now);
+  const bool was_believed = clock_.is_believed();
+  const milliseconds moved = clock_.look(now);
+  if (!was_believed) {
+    if (clock_.is_believed()) release_held(now);
     return;
   }
-  if (moved <= kClockWasSet && -moved <= kClockWasSet) return;
+  if (moved == milliseconds{0}) return;
   for (MeterFeed* const feed : feeds_) feed->clock_was_set();
   for (auto& [meter, watch] : meter_watches_) watch.clock_was_set();
-  note({now.instant(), Severity::warning, "clock_set", "",
-        fmt::format(
-            "the system clock was set {} by {} s; the skipped time is missing from all meters",
-            moved > milliseconds{0} ? "forward" : "back", std::abs(moved.count()) / 1000)});
+  const std::string how =
+      fmt::format("the system clock was set {} by {} s",
+                  moved > milliseconds{0} ? "forward" : "back", std::abs(moved.count()) / 1000);
+  if (clock_.is_believed()) {
+    note({now.instant(), Severity::warning, "clock_set", "",
+          how + "; the skipped time is missing from all meters"});
+  } else {
+    note({std::chrono::floor<seconds>(now.wall - moved), Severity::error, "clock_set", "",
+          fmt::format("{}: {}; readings are held until it is set", how, clock_.doubt())});
+  }
 }
 
 /// Stamps the reads from before the clock was right by their age.
@@ -339,7 +345,7 @@ void Gateway::submit(StoreBatch batch) {
 
 void Gateway::take(MeterFeed& feed, const PolledRead& read) {
   watch_clock(read.at);
-  if (clock_ok_) {
+  if (clock_.is_believed()) {
     take_at(feed, read, read.at.instant());
     return;
   }
@@ -480,7 +486,7 @@ void Gateway::count_stored(const StoreEvent& event) {
 
 void Gateway::close_months() {
   watch_clock(ports_.loop.now());
-  if (!clock_ok_) return;
+  if (!clock_.is_believed()) return;
   // Months are closed from the store, so waiting readings must be committed first.
   if (!committer_.flush()) return;
   std::vector<std::uint32_t> meters;
@@ -540,7 +546,7 @@ void Gateway::evaluate_meters() {
   const CommitHealth& store = committer_.health();
   if (store.is_degraded && !is_refusal_reported_) report_refusal(store.why);
   watch_clock(ports_.loop.now());
-  if (!clock_ok_) return;
+  if (!clock_.is_believed()) return;
   const Instant now = ports_.loop.now().instant();
   for (const MeterFeed* const feed : feeds_) {
     const auto watch = meter_watches_.find(feed->id());
@@ -551,7 +557,7 @@ void Gateway::evaluate_meters() {
 
 void Gateway::evaluate_sensors() {
   watch_clock(ports_.loop.now());
-  if (!clock_ok_) return;
+  if (!clock_.is_believed()) return;
   for (auto& [sensor, watch] : watches_) {
     std::vector<const MeterProgress*> channels;
     for (const MeterProgress* const progress : all_progress()) {
@@ -562,7 +568,8 @@ void Gateway::evaluate_sensors() {
 }
 
 GatewayStatus Gateway::status() const {
-  GatewayStatus status{.clock_ok = clock_ok_,
+  GatewayStatus status{.clock_ok = clock_.is_believed(),
+                       .clock_doubt = clock_.doubt(),
                        .store = committer_.health(),
                        .waiting_intervals = committer_.waiting_intervals(),
                        .events = events_};
@@ -602,7 +609,7 @@ void Gateway::add_quantity(MeterStatus& status, const MeterProgress& progress,
                            std::optional<double> now) const {
   ChannelState state;
   if (const auto watch = watches_.find(progress.channel->sensor);
-      clock_ok_ && watch != watches_.end()) {
+      clock_.is_believed() && watch != watches_.end()) {
     state = watch->second.state_of(progress, ports_.loop.now().instant());
   }
   // Leaves out quantities that a sensor never sent, unless they are missed.
@@ -622,7 +629,7 @@ void Gateway::add_quantity(MeterStatus& status, const MeterProgress& progress,
 }
 
 double Gateway::coverage_of(const MeterProgress& progress) const {
-  if (!clock_ok_) return kAbsent;
+  if (!clock_.is_believed()) return kAbsent;
   return progress.open_month.coverage(ports_.loop.now().instant());
 }
 

@@ -23,6 +23,7 @@
 #include "daemon/gateway/feed/live_bus.hpp"
 #include "daemon/gateway/feed/mqtt_feed.hpp"
 #include "daemon/gateway/feed/pushed_feed.hpp"
+#include "daemon/gateway/ingest/clock_watch.hpp"
 #include "daemon/gateway/ingest/committer.hpp"
 #include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
@@ -43,8 +44,8 @@ struct GatewayPorts {
   std::function<std::unique_ptr<Bus>(const BusConfig&)> make_bus;
   std::string time_zone_release;
   std::uint64_t seed = 1;
-  /// Whether the clock is about to be set; not called again once it returned false. Absent: never.
-  std::function<bool()> is_clock_settling = {};
+  /// Absent: the loop's time is a trial's.
+  std::optional<ClockEvidence> clock = {};
   OnEvent on_event = {};
 };
 
@@ -108,6 +109,8 @@ class Gateway {
   Result<void> flush() { return committer_.flush(); }
 
   [[nodiscard]] GatewayStatus status() const;
+  /// Why readings cannot be stamped yet; empty: they can.
+  [[nodiscard]] const std::string& clock_doubt() const { return clock_.doubt(); }
 
   /// The status of one meter, without the others. @return nothing for one without stored readings.
   [[nodiscard]] std::optional<MeterStatus> meter_status(std::string_view id) const;
@@ -179,13 +182,12 @@ class Gateway {
   Committer committer_;
   MonthKeeper keeper_;
   std::vector<std::unique_ptr<LiveBus>> buses_;  ///< In order of the site file.
-  std::optional<std::chrono::milliseconds> wall_minus_monotonic_;
   std::vector<std::unique_ptr<MqttFeed>> mqtt_;
   std::vector<std::unique_ptr<PushedFeed>> pushed_;
   std::vector<MeterFeed*> feeds_;                    ///< All of them: polled, of a broker, pushed.
   std::map<std::string, MeterWatch> meter_watches_;  ///< By id.
   std::map<std::string, SensorWatch> watches_;       ///< By id of the weather sensor.
-  bool clock_ok_ = false;
+  ClockWatch clock_;
   std::array<std::uint64_t, 3> events_{};                         ///< Committed, by Severity.
   std::optional<std::chrono::milliseconds> refusal_reported_at_;  ///< By the monotonic clock.
   bool is_refusal_reported_ = false;                              ///< It goes on.

@@ -44,6 +44,7 @@
 #include "daemon/gateway/run/weather_wait.hpp"
 #include "daemon/gateway/serve/site_server.hpp"
 #include "daemon/gateway/upkeep/upkeep.hpp"
+#include "daemon/version.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -82,6 +83,13 @@ void save_memory() {
   constexpr int kLongArray_bytes = 128 * 1024;
   ::mallopt(M_ARENA_MAX, kArenas);
   ::mallopt(M_MMAP_THRESHOLD, kLongArray_bytes);
+}
+
+/// What this machine knows of the time.
+ClockEvidence clock_evidence() {
+  return {.released = std::chrono::sys_days{metering::parse_day(kMadeOn).value()},
+          .is_settling = system::is_clock_settling,
+          .is_synchronised = system::is_clock_synchronised};
 }
 
 /// For a store in memory: no backups, and no more data than memory allows.
@@ -150,7 +158,7 @@ class Service {
                            },
                        .time_zone_release = system::time_zone_release(),
                        .seed = std::random_device{}(),  // only for jitter, not for results
-                       .is_clock_settling = options_.trial ? nullptr : system::is_clock_settling,
+                       .clock = options_.trial ? std::nullopt : std::optional{clock_evidence()},
                        .on_event = [this](const StoreEvent& event) { on_event(event); }},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
                         log_month(meter, figure);
@@ -273,6 +281,7 @@ class Service {
                       },
                   .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
                   .now = [this] { return loop_.now().instant(); },
+                  .clock_doubt = [this] { return gateway_->clock_doubt(); },
                   .started = loop_.now().instant(),
                   .no_store = running_.missing,
                   .ask_job = [this](JobKind kind) { return ask(kind, "api"); },
@@ -317,7 +326,8 @@ class Service {
   }
 
   void keep_up() {
-    loop_.after(upkeep_.maintain(loop_.now().instant()), [this] { keep_up(); });
+    const bool is_clock_right = gateway_->clock_doubt().empty();
+    loop_.after(upkeep_.maintain(loop_.now().instant(), is_clock_right), [this] { keep_up(); });
   }
 
   void schedule() {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "adapters/system/files/write_file.hpp"
-#include "daemon/gateway/ingest/plausible_time.hpp"
 #include "daemon/gateway/upkeep/backups.hpp"
 #include "daemon/gateway/upkeep/job_folder.hpp"
 #include "daemon/gateway/upkeep/open_store.hpp"
@@ -40,9 +39,9 @@ Upkeep::Upkeep(Store& store, Worker& checker, StoreConfig config, metering::Loca
 
 Upkeep::~Upkeep() { stop_.request_stop(); }
 
-milliseconds Upkeep::maintain(Instant now) {
+milliseconds Upkeep::maintain(Instant now, bool is_clock_right) {
   hold_reserve(now);
-  const auto backed_up = back_up(now);
+  const auto backed_up = back_up(now, is_clock_right);
   if (!backed_up) {
     backup_.reset();
     report(now, backup_failure_, "backup_failed", backed_up.error().message);
@@ -66,9 +65,9 @@ void Upkeep::hold_reserve(Instant now) {
   }
 }
 
-Result<Upkeep::Progress> Upkeep::back_up(Instant now) {
+Result<Upkeep::Progress> Upkeep::back_up(Instant now, bool is_clock_right) {
   if (is_checking_) return Progress::done;
-  if (!backup_) return begin_backup(now);
+  if (!backup_) return is_clock_right ? begin_backup(now) : Progress::done;
   const auto is_whole = TRY(backup_->step(rules_.backup_pages));
   if (!is_whole) return Progress::more;
   check_backup(now);
@@ -109,7 +108,7 @@ void Upkeep::end_backup(const Result<std::string>& damage, Instant now) {
 /// Today's backup is due once its time has come; the folder shows whether it was made.
 Result<Upkeep::Progress> Upkeep::begin_backup(Instant now) {
   const auto today = calendar_.local_time(now).date;
-  if (!config_.backup_at || !is_plausible_time(now) || damaged_on_ == today) return Progress::done;
+  if (!config_.backup_at || damaged_on_ == today) return Progress::done;
   if (now < calendar_.first_instant(today, static_cast<int>(config_.backup_at->count()))) {
     return Progress::done;
   }

@@ -42,8 +42,9 @@ class Upkeep {
 
   /// Does one step of what is due; no step takes longer than a commit. A failure becomes one event,
   /// and is tried again within the hour.
+  /// @param is_clock_right  No backup begins on a day that the clock does not know.
   /// @return when to call again: soon while there is work, else within the hour.
-  std::chrono::milliseconds maintain(metering::Instant now);
+  std::chrono::milliseconds maintain(metering::Instant now, bool is_clock_right);
 
   /// Changes the times, place and number of backups, and the retention. @pre the same file
   void set_config(StoreConfig config) { config_ = std::move(config); }
@@ -52,7 +53,7 @@ class Upkeep {
   enum class Progress { more, done };
 
   void hold_reserve(metering::Instant now);
-  [[nodiscard]] Result<Progress> back_up(metering::Instant now);
+  [[nodiscard]] Result<Progress> back_up(metering::Instant now, bool is_clock_right);
   [[nodiscard]] Result<Progress> begin_backup(metering::Instant now);
   void check_backup(metering::Instant now);
   /// @param damage  The result of the check.

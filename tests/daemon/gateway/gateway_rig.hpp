@@ -138,7 +138,7 @@ class GatewayRig {
                return std::make_unique<recald::testing::CounterBus>(runs_on_, devices_);
              },
          .time_zone_release = "2025b",
-         .is_clock_settling = is_clock_settling_},
+         .clock = clock_},
         [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
           closed_.push_back({meter.id, figure, runs_on_.now().instant()});
         });
@@ -160,7 +160,8 @@ class GatewayRig {
   };
 
   std::map<std::uint8_t, recald::testing::CounterDevice> devices_;  ///< By unit; of every bus.
-  std::function<bool()> is_clock_settling_;
+  std::optional<ClockEvidence> clock_ =
+      ClockEvidence{.released = std::chrono::sys_days{std::chrono::year{2024} / 1 / 1}};
   std::vector<std::string> buses_made_;  ///< Their names.
   std::vector<ClosedMonth> closed_;      ///< In order, all revisions.
   std::unique_ptr<Gateway> gateway_;

@@ -29,7 +29,6 @@ constexpr std::array<std::string_view, 6> kKeys{"meter",  "unit",   "stamps",
                                                 "reason", "author", "readings"};
 constexpr int kDepthMax = 8;  // a valid body has three
 /// A sender whose clock was reset must not create months of the year 2000.
-constexpr std::chrono::days kOldest{400};
 
 tl::unexpected<http::Response> malformed(std::string_view what, std::string_view field) {
   return refusal(400, "malformed", fmt::format("{}; send JSON such as {}", what, kExample), field);
@@ -176,10 +175,10 @@ class Elements {
                       is_instant ? "," : ": that interval ends", metering::to_string(now_)),
           place);
     }
-    if (start < now_ - kOldest) {
+    if (start < now_ - kSentOldest) {
       return refusal(400, "invalid_value",
                      fmt::format("{} is {}, more than {} days ago; {}", place,
-                                 csv::in_quotes(*text), kOldest.count(),
+                                 csv::in_quotes(*text), kSentOldest.count(),
                                  unit_.quantity == nullptr
                                      ? "use recald import for older readings"
                                      : "older weather belongs in the file named by [weather] file"),

@@ -11,9 +11,10 @@ using Json = nlohmann::ordered_json;
 std::vector<std::string> reasons_not_ready(const GatewayStatus& status) {
   std::vector<std::string> reasons;
   if (!status.clock_ok) {
-    reasons.emplace_back(
-        "the system clock is not set yet; readings are held until it is, because they cannot be "
-        "stamped");
+    reasons.push_back(
+        fmt::format("the system clock is not set: {}; readings are held until it is, because they "
+                    "cannot be stamped",
+                    status.clock_doubt));
   }
   if (!status.no_store.empty()) {
     reasons.push_back(

@@ -4,7 +4,6 @@
 
 #include "core/metering/months/validation.hpp"
 #include "core/text/number_text.hpp"
-#include "daemon/gateway/ingest/plausible_time.hpp"
 #include "daemon/gateway/serve/api/api.hpp"
 #include "daemon/gateway/serve/api/json_answer.hpp"
 #include "daemon/gateway/serve/api/parameters.hpp"
@@ -47,10 +46,10 @@ http::Response post_readings(const Served& served, const http::Request& request)
     return not_taken("nothing was stored, send the readings again: the store cannot be opened: " +
                      served.no_store);
   }
-  if (!is_plausible_time(served.now())) {
+  if (const std::string doubt = served.clock_doubt ? served.clock_doubt() : ""; !doubt.empty()) {
     return http::error_response(
         503, "clock_not_set",
-        "the daemon's clock has not been set yet; send the readings again later");
+        fmt::format("the daemon's clock is not set: {}; send the readings again later", doubt));
   }
   auto pushed = parse_pushed(request.body, served.site, served.now());
   if (!pushed) return pushed.error();

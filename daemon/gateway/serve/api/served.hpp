@@ -30,6 +30,8 @@ struct Served {
   /// Calls Gateway::meter_status.
   std::function<std::optional<MeterStatus>(const std::string& id)> meter_status;
   std::function<metering::Instant()> now;
+  /// Calls Gateway::clock_doubt. Absent: the clock is right.
+  std::function<std::string()> clock_doubt = {};
   metering::Instant started{};
   /// Why `store` is only in memory: incoming readings are refused, since they would be lost.
   /// Empty: it is on disk.

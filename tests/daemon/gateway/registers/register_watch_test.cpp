@@ -124,7 +124,7 @@ TEST_F(Watched, AStoreThatRefusesIsNotReady) {
 }
 
 TEST_F(Watched, AClockThatIsNotSetHasNoMonth) {
-  is_clock_settling_ = [] { return true; };
+  clock_->is_settling = [] { return true; };
   begin();
   watch();
   loop_.run_for(hours{1});

@@ -35,7 +35,10 @@ Instant utc(int year, unsigned month, unsigned day, int hour = 0) {
 /// A gateway with one meter in some zone, from some time on.
 class GatewayInZone : private testing::RigInMemory {
  public:
-  GatewayInZone(const std::string& zone, Instant start) : RigInMemory{start}, start_{start} {
+  /// @param is_trial  Its time is that of a recording.
+  GatewayInZone(const std::string& zone, Instant start, bool is_trial = false)
+      : RigInMemory{start}, start_{start} {
+    if (is_trial) clock_.reset();
     begin(load(testing::site_head(zone, "watermark = \"2h\"\n") + testing::kMainMeter));
   }
 
@@ -113,6 +116,7 @@ TEST_P(ClockChange, MonthIsWholeAndItsEnergyTrue) {
 }
 
 constexpr auto k2024 = std::chrono::year{2024};
+constexpr auto k2040 = std::chrono::year{2040};
 INSTANTIATE_TEST_SUITE_P(
     Golden, ClockChange,
     ::testing::Values(
@@ -123,7 +127,13 @@ INSTANTIATE_TEST_SUITE_P(
                     31 * 96 - 2},
         ChangeMonth{"lord_howe_94_98_autumn", "Australia/Lord_Howe", k2024 / 4, 7, 98, 30 * 96 + 2},
         ChangeMonth{"midnight_missing", "Africa/Cairo", k2024 / 4, 26, 92, 30 * 96 - 4},
-        ChangeMonth{"quarter_hour_offset", "Pacific/Chatham", k2024 / 9, 29, 92, 30 * 96 - 4}),
+        ChangeMonth{"quarter_hour_offset", "Pacific/Chatham", k2024 / 9, 29, 92, 30 * 96 - 4},
+        // After what zone files list, by the rules at their ends.
+        ChangeMonth{"rule_spring", "Europe/Berlin", k2040 / 3, 25, 92, 31 * 96 - 4},
+        ChangeMonth{"rule_autumn", "America/Chicago", k2040 / 11, 4, 100, 30 * 96 + 4},
+        ChangeMonth{"rule_lord_howe", "Australia/Lord_Howe", k2040 / 4, 1, 98, 30 * 96 + 2},
+        ChangeMonth{"rule_negative_summer_time", "Europe/Dublin", k2040 / 10, 28, 100, 31 * 96 + 4},
+        ChangeMonth{"rule_day_before", "America/Nuuk", k2040 / 3, 24, 92, 31 * 96 - 4}),
     [](const auto& change) { return change.param.name; });
 
 // In Tokyo the year begins at 15:00 of UTC's last day.
@@ -140,6 +150,41 @@ TEST(GatewayClock, YearBoundaryUtc) {
   EXPECT_EQ(gateway.figure(december).coverage, 1.0);
   EXPECT_GE(gateway.closed_at(december), months[0].end + hours{2});
   EXPECT_LE(gateway.closed_at(december), months[0].end + hours{3});
+}
+
+// Long before recald was made: the clock of a trial is that of the recording.
+TEST(GatewayClock, AnOldRecordingIsReplayed) {
+  for (const auto year : {std::chrono::year{1998}, std::chrono::year{2015}}) {
+    const Month march = year / 3;
+    const TimeSpan month =
+        metering::LocalCalendar::open("America/Chicago").value().month_span(march);
+    GatewayInZone gateway{"America/Chicago", month.begin - hours{30}, true};
+    gateway.run_until(month.end + hours{4});
+    EXPECT_EQ(gateway.figure(march).coverage, 1.0);
+    EXPECT_NEAR(gateway.figure(march).daily_average_kWh * 31.0, gateway.true_kWh(month), kTick);
+  }
+}
+
+// Without a time server nothing bears the stamp of a leap by decades, and the clock's way back is
+// a step like any other.
+TEST(GatewayClock, ALeapByDecadesIsHeldAndSaid) {
+  GatewayInZone gateway{"America/Chicago", utc(2024, 5, 1)};
+  gateway.run_until(utc(2024, 5, 3, 6) + minutes{5});
+  const milliseconds leap = utc(2106, 2, 7, 6) - utc(2024, 5, 3, 6);
+  gateway.set_clock(leap);
+  gateway.run_until(utc(2106, 2, 7, 8));
+  EXPECT_EQ(gateway.stored({utc(2024, 5, 4), Instant::max()}).slots, 0);
+  EXPECT_THAT(
+      gateway.events(),
+      Contains(::testing::AllOf(
+          Field(&StoreEvent::kind, "clock_set"), Field(&StoreEvent::severity, Severity::error),
+          Field(&StoreEvent::time, ::testing::Lt(utc(2024, 5, 3, 7))),
+          Field(&StoreEvent::text, ::testing::HasSubstr("readings are held")))));
+  gateway.set_clock(-leap);
+  gateway.run_until(utc(2024, 5, 7));
+  EXPECT_EQ(gateway.stored({utc(2024, 5, 2), utc(2024, 5, 3)}).ok, 96);
+  EXPECT_EQ(gateway.stored({utc(2024, 5, 4), utc(2024, 5, 6)}).ok, 2 * 96);
+  EXPECT_EQ(gateway.stored({utc(2024, 5, 8), Instant::max()}).slots, 0);
 }
 
 // A day is lived through a second time: what was measured the first time stays, nothing is there

@@ -193,16 +193,25 @@ TEST_F(GatewayTest, LateAfterCloseAndRestart) {
   EXPECT_NEAR(figures[2].daily_average_kWh, true_kWh(march()) / 31.0, 0.4);
 }
 
-// clock_1970_then_sync: a gateway without a clock battery wakes up in 1970. What it reads is kept
-// and stamped when the time is known.
-TEST_F(GatewayTest, Clock1970ThenSync) {
-  const auto true_start = loop_.now().wall;
-  loop_.set_wall_clock(-true_start.time_since_epoch());
+/// When a clock without a battery wakes up.
+class DeadClock : public GatewayTest, public ::testing::WithParamInterface<Instant> {};
+
+INSTANTIATE_TEST_SUITE_P(Years, DeadClock,
+                         ::testing::Values(Instant{},
+                                           std::chrono::sys_days{std::chrono::year{1980} / 1 / 6},
+                                           std::chrono::sys_days{std::chrono::year{2000} / 1 / 1},
+                                           std::chrono::sys_days{std::chrono::year{2106} / 2 / 7}));
+
+// clock_1970_then_sync: a gateway without a clock battery wakes up in 1970, 2000 or wherever its
+// clock begins. What it reads is kept and stamped when the time is known.
+TEST_P(DeadClock, ThenSync) {
+  const milliseconds off = loop_.now().wall - GetParam();
+  loop_.set_wall_clock(-off);
   begin();
   loop_.run_for(hours{3});
   EXPECT_FALSE(gateway_->status().clock_ok);
   EXPECT_EQ(count("main", Validity::ok), 0);
-  loop_.set_wall_clock(true_start.time_since_epoch());
+  loop_.set_wall_clock(off);
   loop_.run_for(hours{3});
   EXPECT_TRUE(gateway_->status().clock_ok);
   EXPECT_GE(count("main", Validity::ok), 23);
@@ -215,7 +224,7 @@ TEST_F(GatewayTest, Clock1970ThenSync) {
 // nothing bears a wrong stamp.
 TEST_F(GatewayTest, AClockThatIsAboutToBeSetIsNotBelieved) {
   bool is_settling = true;
-  is_clock_settling_ = [&] { return is_settling; };
+  clock_->is_settling = [&] { return is_settling; };
   loop_.set_wall_clock(hours{5});
   begin();
   loop_.run_for(minutes{8});
@@ -231,6 +240,25 @@ TEST_F(GatewayTest, AClockThatIsAboutToBeSetIsNotBelieved) {
   is_settling = true;  // a clock that loses its server still runs
   loop_.run_for(hours{1});
   EXPECT_TRUE(gateway_->status().clock_ok);
+}
+
+// Switched on again with a clock that is months behind what it has recorded, as from a clock chip
+// that starts with its firmware's date: nothing is stamped a second time.
+TEST_F(GatewayTest, AClockBehindTheStoreIsHeldUntilATimeServerIsHeard) {
+  begin();
+  loop_.run_for(days{40});
+  const int before = count("main", Validity::ok);
+  bool is_heard = false;
+  clock_->is_synchronised = [&] { return is_heard; };
+  loop_.set_wall_clock(-days{30});
+  begin();
+  loop_.run_for(hours{2});
+  EXPECT_THAT(gateway_->clock_doubt(),
+              ::testing::HasSubstr("the store has readings until 2024-04-"));
+  EXPECT_EQ(count("main", Validity::ok), before);
+  is_heard = true;  // and it agrees with the clock: the store was wrong
+  loop_.run_for(hours{2});
+  EXPECT_EQ(gateway_->clock_doubt(), "");
 }
 
 TEST_F(GatewayTest, StepBack20Min) {

@@ -139,6 +139,7 @@ class Life {
     Rig(Store& store, recald::testing::VirtualLoop& loop) : GatewayRig{store, loop, kRigStart} {}
     void note(StoreEvent event) { gateway_->note(std::move(event)); }
     void flush() { (void)gateway_->flush(); }
+    [[nodiscard]] bool is_clock_right() const { return gateway_->clock_doubt().empty(); }
   };
 
   /// After its process has ended it does nothing more.
@@ -171,9 +172,10 @@ class Life {
   }
 
   void keep_up() {
-    loop_.after(upkeep_->maintain(loop_.now().instant()), [this, alive = std::weak_ptr{alive_}] {
-      if (!alive.expired()) keep_up();
-    });
+    loop_.after(upkeep_->maintain(loop_.now().instant(), rig_->is_clock_right()),
+                [this, alive = std::weak_ptr{alive_}] {
+                  if (!alive.expired()) keep_up();
+                });
   }
 
   void run_for(std::chrono::milliseconds length) {

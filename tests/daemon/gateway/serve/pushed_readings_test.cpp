@@ -74,6 +74,20 @@ TEST_F(PushedMeterSite, SentAgainItIsTakenOnce) {
   EXPECT_THAT(intervals(), SizeIs(4));
 }
 
+// Their stamps are the sender's, but what is to come can only be told from a clock that is right.
+TEST_F(PushedMeterSite, AClockThatIsNotSetTakesNoneYet) {
+  const auto off = loop_.now().wall.time_since_epoch() - hours{1};
+  const std::string body = body_of(kStart - hours{3}, 4, 5.0);
+  loop_.set_wall_clock(-off);
+  begin();
+  const http::Response response = post(body);
+  EXPECT_EQ(response.status, 503);
+  EXPECT_THAT(response.body, HasSubstr("the daemon's clock is not set: it says 1970-01-01"));
+  loop_.set_wall_clock(off);
+  loop_.run_for(minutes{2});
+  EXPECT_EQ(taken(body)["stored"], 4);
+}
+
 // A year and a month may be caught up on; what is older is taken for a wrong date.
 TEST_F(PushedMeterSite, ReadingsOlderThan400DaysAreRefused) {
   EXPECT_EQ(taken(body_of(kStart - days{399}, 1, 5.0))["stored"], 1);

@@ -78,6 +78,7 @@ class ServedSite : public ::testing::Test, protected testing::RigInMemory {
                  .status = [this] { return gateway_->status(); },
                  .meter_status = [this](const auto& id) { return gateway_->meter_status(id); },
                  .now = [this] { return loop_.now().instant(); },
+                 .clock_doubt = [this] { return gateway_->clock_doubt(); },
                  .started = kStart,
                  .take_readings =
                      [this](const std::string& meter, auto readings, const auto& correction) {

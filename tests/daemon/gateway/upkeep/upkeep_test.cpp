@@ -69,9 +69,9 @@ class UpkeepTest : public ::testing::Test {
     };
   }
   /// Until there is no more to do. @return how many portions it took.
-  int maintain(Upkeep& upkeep, Instant now) {
+  int maintain(Upkeep& upkeep, Instant now, bool is_clock_right = true) {
     int portions = 1;
-    while ((rest_ = upkeep.maintain(now)) == rules_.pause) ++portions;
+    while ((rest_ = upkeep.maintain(now, is_clock_right)) == rules_.pause) ++portions;
     return portions;
   }
   static int samples(Store& store) {
@@ -379,11 +379,13 @@ TEST_F(UpkeepTest, AClockYearsAheadDeletesNothing) {
   EXPECT_THAT(store.events(10).value(), IsEmpty());
 }
 
-TEST_F(UpkeepTest, In1970ThereIsNoBackup) {
+TEST_F(UpkeepTest, AClockThatIsNotSetMakesNoBackup) {
   auto store = open();
   Upkeep upkeep{store, checker_, config_, calendar_, into(store), rules_};
-  maintain(upkeep, Instant{hours{12}});
+  maintain(upkeep, Instant{hours{12}}, false);
   EXPECT_FALSE(std::filesystem::exists(config_.backup_folder));
+  maintain(upkeep, kMidnight + hours{12});
+  EXPECT_TRUE(std::filesystem::exists(config_.backup_folder));
 }
 
 TEST_F(UpkeepTest, AFullDiskTakesTheReserveAndTheCommitIsThere) {
