@@ -353,21 +353,26 @@ Result<std::string_view> shipped_register_map(std::string_view name) {
           fmt::join(names, ", ")));
 }
 
+Result<std::string> read_register_map(const std::string& name,
+                                      const std::filesystem::path& folder) {
+  const std::filesystem::path given{name};
+  const std::filesystem::path path = given.is_absolute() ? given : folder / given;
+  std::ifstream in;
+  if (system::require_file(path, "register map")) in.open(path, std::ios::binary);
+  if (in.is_open()) return std::string{std::istreambuf_iterator<char>{in}, {}};
+  return failure(ErrorCode::not_found,
+                 fmt::format("register map '{}' cannot be read; name a file next to the site "
+                             "file or a shipped map: {}",
+                             path.string(), fmt::join(shipped_register_maps(), ", ")));
+}
+
 tl::expected<RegisterMap, Problems> find_register_map(const std::string& name,
                                                       const std::filesystem::path& folder) {
   std::string text;
   if (name.ends_with(".toml")) {
-    const std::filesystem::path given{name};
-    const std::filesystem::path path = given.is_absolute() ? given : folder / given;
-    std::ifstream in;
-    if (system::require_file(path, "register map")) in.open(path, std::ios::binary);
-    if (!in.is_open()) {
-      return tl::unexpected(
-          Problems{fmt::format("register map '{}' cannot be read; name a file next to the site "
-                               "file or a shipped map: {}",
-                               path.string(), fmt::join(shipped_register_maps(), ", "))});
-    }
-    text.assign(std::istreambuf_iterator<char>{in}, {});
+    auto own = read_register_map(name, folder);
+    if (!own) return tl::unexpected(Problems{own.error().message});
+    text = std::move(*own);
   } else {
     const auto shipped = shipped_register_map(name);
     if (!shipped) return tl::unexpected(Problems{shipped.error().message});
@@ -379,8 +384,18 @@ tl::expected<RegisterMap, Problems> find_register_map(const std::string& name,
 
 const tl::expected<RegisterMap, Problems>& RegisterMaps::find(const std::string& name) {
   auto known = read_.find(name);
-  if (known == read_.end()) known = read_.emplace(name, find_register_map(name, folder_)).first;
+  if (known == read_.end()) known = read_.emplace(name, find_anew(name)).first;
   return known->second;
+}
+
+tl::expected<RegisterMap, Problems> RegisterMaps::find_anew(const std::string& name) const {
+  if (given_ == nullptr || !name.ends_with(".toml")) return find_register_map(name, folder_);
+  const auto text = given_->find(name);
+  if (text == given_->end()) {
+    return tl::unexpected(Problems{fmt::format("register map '{}' is not given", name)});
+  }
+  auto file = TRY(parse_register_map(text->second, name));
+  return std::move(file.map);
 }
 
 }  // namespace recald::daemon

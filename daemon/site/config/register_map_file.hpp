@@ -43,17 +43,30 @@ struct RegisterMapFile {
 [[nodiscard]] tl::expected<modbus::RegisterMap, Problems> find_register_map(
     const std::string& name, const std::filesystem::path& folder);
 
+/// The text of such a file. @return or a sentence that says where it should be.
+[[nodiscard]] Result<std::string> read_register_map(const std::string& name,
+                                                    const std::filesystem::path& folder);
+
+/// Texts of register maps, by the names that a site file gives them.
+using MapTexts = std::map<std::string, std::string>;
+
 /// The maps of one site file, each read once, however many meters have it.
 class RegisterMaps {
  public:
   /// @param folder  Where a map of one's own lies: that of the site file.
-  explicit RegisterMaps(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// @param given   In the place of files, if not null; outlives this.
+  explicit RegisterMaps(std::filesystem::path folder, const MapTexts* given = nullptr)
+      : folder_(std::move(folder)), given_(given) {}
 
   /// As find_register_map.
   [[nodiscard]] const tl::expected<modbus::RegisterMap, Problems>& find(const std::string& name);
 
  private:
+  [[nodiscard]] tl::expected<modbus::RegisterMap, Problems> find_anew(
+      const std::string& name) const;
+
   std::filesystem::path folder_;
+  const MapTexts* given_;
   std::map<std::string, tl::expected<modbus::RegisterMap, Problems>> read_;
 };
 

@@ -643,13 +643,13 @@ void read_models(TomlReader& root, bool is_located, SiteConfig& config) {
 }
 
 /// Meters with their addresses on buses, and weather sensors. @param tables  All [[meter]].
-void read_meters(std::vector<TomlReader>& tables, SiteConfig& config) {
+void read_meters(std::vector<TomlReader>& tables, const MapTexts* given, SiteConfig& config) {
   const auto first_sensor = std::stable_partition(
       tables.begin(), tables.end(),
       [](TomlReader& table) { return table.word("role", {"weather"}) != "weather"; });
   std::set<std::string> ids;
   BusAddresses addresses{config.buses};
-  RegisterMaps maps{config.file.parent_path()};
+  RegisterMaps maps{config.file.parent_path(), given};
   for (auto table = tables.begin(); table != tables.end(); ++table) {
     const bool is_sensor = table >= first_sensor;
     std::vector<MeterConfig>& list = is_sensor ? config.sensors : config.meters;
@@ -716,7 +716,7 @@ void read_whole_weather(TomlReader& root, SiteConfig& config) {
   }
 }
 
-void read_root(TomlReader root, SiteConfig& config) {
+void read_root(TomlReader root, const MapTexts* maps, SiteConfig& config) {
   const auto site = root.table("site");
   if (site) {
     read_site(*site, config);
@@ -750,7 +750,7 @@ void read_root(TomlReader root, SiteConfig& config) {
     }
   }
   std::vector<TomlReader> tables = root.tables("meter");
-  read_meters(tables, config);
+  read_meters(tables, maps, config);
   require_broker(root, config);
   if (config.meters.empty()) {
     root.problem(config.sensors.empty() ? "there is no [[meter]]"
@@ -832,14 +832,15 @@ const MeterConfig* SiteConfig::find_sensor(std::string_view sensor_id) const {
 }
 
 tl::expected<SiteConfig, std::vector<std::string>> parse_site(std::string_view text,
-                                                              const std::filesystem::path& file) {
+                                                              const std::filesystem::path& file,
+                                                              const MapTexts* maps) {
   Problems problems;
   const std::string name = file.filename().string();
   SiteConfig config;
   config.file = file;
   try {
     const toml::table root = parse_toml(text, name);
-    read_root(TomlReader{root, name, "", problems}, config);
+    read_root(TomlReader{root, name, "", problems}, maps, config);
   } catch (const toml::parse_error& error) {
     problems.push_back(syntax_problem(name, error));
   }

@@ -209,7 +209,8 @@ struct SiteConfig {
     const std::filesystem::path& file);
 
 /// The same of a text; `file` is where paths in it start from and what messages name.
+/// @param maps  Register maps of its meters in the place of files, if not null.
 [[nodiscard]] tl::expected<SiteConfig, std::vector<std::string>> parse_site(
-    std::string_view text, const std::filesystem::path& file);
+    std::string_view text, const std::filesystem::path& file, const MapTexts* maps = nullptr);
 
 }  // namespace recald::daemon
