@@ -125,6 +125,13 @@ MeterStatus RegisterFeed::status(metering::Instant /*now*/) const {
   return status;
 }
 
+bool RegisterFeed::makes(std::size_t read, const modbus::ReadRequest& request) const {
+  if (read >= reads_.size()) return false;
+  const modbus::PlannedRead& planned = reads_[read];
+  return request ==
+         modbus::ReadRequest{config_.unit, planned.function, planned.address, planned.count};
+}
+
 std::optional<metering::Instant> RegisterFeed::measured_at() const {
   if (is_sensor()) return std::nullopt;
   return meter().live().measured_at;

@@ -41,6 +41,8 @@ class RegisterFeed : public MeterFeed {
   [[nodiscard]] const LiveMeterConfig& config() const { return config_; }
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] const std::vector<modbus::PlannedRead>& reads() const { return reads_; }
+  /// Whether its read of that number asks for this.
+  [[nodiscard]] bool makes(std::size_t read, const modbus::ReadRequest& request) const;
   [[nodiscard]] std::chrono::seconds interval() const {
     return progress().front().stored.meter.interval;
   }

@@ -215,22 +215,77 @@ Result<void> Gateway::take_over_intervals(MeterProgress& progress, Store& memory
 }
 
 void Gateway::start() {
-  watch_clock(ports_.loop.now());
-  for (const auto& bus : buses_) start(*bus);
-  for (const auto& feed : mqtt_) note_doubt(*feed);
-  close_months_every_hour();
-  evaluate_meters_every_minute();
+  const Moment now = ports_.loop.now();
+  watch_clock(now);
+  tell(now, recording::Start{});
+  for (const auto& bus : buses_) start(*bus, now.instant());
+  for (const auto& feed : mqtt_) note_doubt(*feed, now.instant());
+  close_months(now);
+  evaluate_meters(now);
+  if (!ports_.make_bus) return;
+  tick_again(recording::Tick::hour, kMonthsEvery);
+  tick_again(recording::Tick::minute, kMetersEvery);
 }
 
-void Gateway::start(LiveBus& bus) {
-  bus.start(ports_of(bus), [this](MeterFeed& feed, const PolledRead& read) { take(feed, read); });
-  for (const auto& feed : bus.feeds()) note_doubt(*feed);
+void Gateway::tick_again(recording::Tick which, milliseconds every) {
+  ports_.loop.after(every, alive_.guard([this, which, every] {
+    tick(which);
+    tick_again(which, every);
+  }));
 }
 
-void Gateway::note_doubt(MeterFeed& feed) {
+void Gateway::tick(recording::Tick which) {
+  const Moment now = ports_.loop.now();
+  watch_clock(now);
+  tell(now, which);
+  if (which == recording::Tick::minute) return evaluate_meters(now);
+  // Not at the start: sensors that seem silent have not been asked yet.
+  evaluate_sensors(now.instant());
+  close_months(now);
+}
+
+void Gateway::tell(const Moment& at, recording::What what) {
+  if (ports_.recorder != nullptr) ports_.recorder->entered({at, clock_.doubt(), std::move(what)});
+}
+
+void Gateway::tell_read(const MeterFeed& feed, const PolledRead& read) {
+  tell(read.at, recording::Read{.meter = feed.id(),
+                                .read = read.order.read,
+                                .request = read.order.request,
+                                .due = read.order.due,
+                                .is_probe = read.order.is_probe,
+                                .result = read.result,
+                                .duration = read.duration});
+}
+
+void Gateway::post_step(std::function<void(const Moment&)> step) {
+  ports_.loop.post(alive_.guard([this, step = std::move(step)] {
+    const Moment now = ports_.loop.now();
+    watch_clock(now);
+    tell(now, recording::Tick::step);
+    step(now);
+  }));
+}
+
+std::vector<StoredMeter> Gateway::meters() const {
+  std::vector<StoredMeter> all;
+  for (const MeterFeed* const feed : feeds_) {
+    for (const MeterProgress& progress : feed->progress()) all.push_back(progress.stored);
+  }
+  return all;
+}
+
+void Gateway::start(LiveBus& bus, Instant now) {
+  if (ports_.make_bus) {
+    bus.start(ports_of(bus), [this](MeterFeed& feed, const PolledRead& read) { take(feed, read); });
+  }
+  for (const auto& feed : bus.feeds()) note_doubt(*feed, now);
+}
+
+void Gateway::note_doubt(MeterFeed& feed, Instant now) {
   const std::string doubt = feed.take_doubt();
   if (doubt.empty()) return;
-  note({ports_.loop.now().instant(), Severity::error, "counter_state_lost", feed.id(),
+  note({now, Severity::error, "counter_state_lost", feed.id(),
         fmt::format("meter '{}': {}; its counter starts again from here, and the energy since "
                     "the last interval is unknown",
                     feed.id(), doubt)});
@@ -254,31 +309,33 @@ void Gateway::begin_buses_anew() {
 Result<void> Gateway::reload(const SiteConfig& site) {
   // Counters continue from the stored state, so everything must be stored.
   if (auto flushed = committer_.flush(); !flushed) return flushed;
+  const Moment now = ports_.loop.now();
   const auto changed = std::stable_partition(
       buses_.begin(), buses_.end(), [&](const auto& bus) { return bus->is_described_by(site); });
   const std::span kept{buses_.begin(), changed};
   auto opened = TRY(open_buses(site, kept));
   auto mqtt = TRY(open_mqtt(site));
   auto pushed = TRY(open_pushed(site));
+  if (ports_.recorder != nullptr) ports_.recorder->reloaded({now, clock_.doubt(), {}}, site);
   feeds_.clear();
   mqtt_ = std::move(mqtt);
   pushed_ = std::move(pushed);
   buses_.erase(changed, buses_.end());  // a serial line has one owner: the old one ends first
   gather_feeds();
-  for (const auto& feed : mqtt_) note_doubt(*feed);
+  for (const auto& feed : mqtt_) note_doubt(*feed, now.instant());
   begin_buses_anew();  // those that are kept
   // Held reads were planned with the old descriptions, which may have changed.
   std::erase_if(held_, [&](const HeldRead& held) { return find_feed(held.meter) == nullptr; });
   for (auto& bus : opened) {
     buses_.push_back(std::move(bus));
     gather_feeds();
-    start(*buses_.back());
+    start(*buses_.back(), now.instant());
   }
   watch_meters_of(site);
   watch_sensors_of(site);
   keeper_.set_options(site.closing);
   // Changed rules close months again, but only after the reload has ended.
-  ports_.loop.post(alive_.guard([this] { close_months(); }));
+  post_step([this](const Moment& at) { close_months(at); });
   return {};
 }
 
@@ -345,6 +402,11 @@ void Gateway::submit(StoreBatch batch) {
 
 void Gateway::take(MeterFeed& feed, const PolledRead& read) {
   watch_clock(read.at);
+  if (ports_.recorder != nullptr) tell_read(feed, read);
+  take_or_hold(feed, read);
+}
+
+void Gateway::take_or_hold(MeterFeed& feed, const PolledRead& read) {
   if (clock_.is_believed()) {
     take_at(feed, read, read.at.instant());
     return;
@@ -368,13 +430,39 @@ Result<bool> Gateway::accept_mqtt(const MeterValue& value) {
     return failure(ErrorCode::not_found, fmt::format("meter '{}' has no such value", value.meter));
   }
   watch_clock(now);
+  tell(now, recording::Value{value});
   if (!value.measured) {
-    take(**feed, *read);
+    take_or_hold(**feed, *read);
     return true;
   }
   if ((*feed)->is_late(value, *value.measured)) return false;
   take_at(**feed, *read, *value.measured);
   return true;
+}
+
+Result<void> Gateway::take_read(const recording::Read& read) {
+  for (const auto& bus : buses_) {
+    for (const auto& feed : bus->feeds()) {
+      if (feed->id() != read.meter) continue;
+      if (!feed->makes(read.read, read.request)) break;
+      take(*feed, {.order = {.unit = 0,
+                             .read = read.read,
+                             .request = read.request,
+                             .timeout = {},
+                             .due = read.due,
+                             .is_probe = read.is_probe},
+                   .result = read.result,
+                   .lateness = {},
+                   .duration = read.duration,
+                   .at = ports_.loop.now()});
+      return {};
+    }
+  }
+  return failure(ErrorCode::unsupported,
+                 fmt::format("meter '{}': the recording has {} registers from {} on (function {}) "
+                             "of unit {}, which this recald does not read",
+                             read.meter, read.request.count, read.request.address,
+                             static_cast<int>(read.request.function), read.request.unit));
 }
 
 Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
@@ -386,6 +474,9 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
     return failure(ErrorCode::not_found,
                    "this daemon does not accept readings of a meter '" + meter + "'");
   }
+  const Moment at = ports_.loop.now();
+  watch_clock(at);
+  if (ports_.recorder != nullptr) tell(at, recording::Push{meter, readings, correction});
   const MeterProgress& progress = *(*feed)->find(meter);
   StoreBatch batch;
   for (metering::Reading& reading : readings) {
@@ -393,8 +484,7 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
     batch.intervals.push_back({.reading = reading, .supersedes = correction.has_value()});
   }
   progress.mark_late(batch, calendar_);
-  watch_clock(ports_.loop.now());
-  const Instant now = ports_.loop.now().instant();
+  const Instant now = at.instant();
   auto counts = commit_pushed(batch, correction, now);
   if (!counts) {
     if (counts.error().code == ErrorCode::io_failed) report_refusal(counts.error().message);
@@ -468,7 +558,9 @@ void Gateway::note_committed(const StoreBatch& batch, const CommitCounts& counts
     if (!counts.was_taken[i]) continue;
     const metering::Reading& reading = batch.intervals[i].reading;
     MeterProgress* const progress = find_progress(reading.meter);
-    if (progress != nullptr) progress->note(reading);
+    if (progress == nullptr) continue;
+    progress->note(reading);
+    if (ports_.recorder != nullptr) ports_.recorder->stored(progress->stored.meter.id, reading);
   }
   for (const StoreEvent& event : batch.events) count_stored(event);
 }
@@ -484,8 +576,7 @@ void Gateway::count_stored(const StoreEvent& event) {
   }
 }
 
-void Gateway::close_months() {
-  watch_clock(ports_.loop.now());
+void Gateway::close_months(const Moment& at) {
   if (!clock_.is_believed()) return;
   // Months are closed from the store, so waiting readings must be committed first.
   if (!committer_.flush()) return;
@@ -494,24 +585,24 @@ void Gateway::close_months() {
     if (!progress->channel) meters.push_back(progress->stored.number);
   }
   std::ranges::reverse(meters);
-  close_months_of(std::move(meters));
+  close_months_of(std::move(meters), at.instant());
 }
 
 /// Closes some months of the last meter in the list; the others follow after whatever else waits
 /// for the loop, because a thousand months take seconds.
-void Gateway::close_months_of(std::vector<std::uint32_t> meters) {
+void Gateway::close_months_of(std::vector<std::uint32_t> meters, Instant now) {
   if (meters.empty()) return;
   // A reload may have removed it meanwhile.
   const MeterProgress* const meter = find_progress(meters.back());
-  const bool has_more = meter != nullptr && close_months_of(*meter);
+  const bool has_more = meter != nullptr && close_months_of(*meter, now);
   if (!has_more) meters.pop_back();
   if (meters.empty()) return;
-  ports_.loop.post(alive_.guard(
-      [this, meters = std::move(meters)]() mutable { close_months_of(std::move(meters)); }));
+  post_step([this, meters = std::move(meters)](const Moment& at) {
+    close_months_of(meters, at.instant());
+  });
 }
 
-bool Gateway::close_months_of(const MeterProgress& meter) {
-  const Instant now = ports_.loop.now().instant();
+bool Gateway::close_months_of(const MeterProgress& meter, Instant now) {
   const StoredMeter stored = meter.stored;
   const auto closed = keeper_.close_due(
       {&stored, 1}, now,
@@ -528,26 +619,11 @@ bool Gateway::close_months_of(const MeterProgress& meter) {
   return closed && closed->size() == kMonthsAtATime;
 }
 
-void Gateway::close_months_every_hour() {
-  close_months();
-  ports_.loop.after(kMonthsEvery, alive_.guard([this] {
-    // Not at the start: sensors that seem silent have not been asked yet.
-    evaluate_sensors();
-    close_months_every_hour();
-  }));
-}
-
-void Gateway::evaluate_meters_every_minute() {
-  evaluate_meters();
-  ports_.loop.after(kMetersEvery, alive_.guard([this] { evaluate_meters_every_minute(); }));
-}
-
-void Gateway::evaluate_meters() {
+void Gateway::evaluate_meters(const Moment& at) {
   const CommitHealth& store = committer_.health();
   if (store.is_degraded && !is_refusal_reported_) report_refusal(store.why);
-  watch_clock(ports_.loop.now());
   if (!clock_.is_believed()) return;
-  const Instant now = ports_.loop.now().instant();
+  const Instant now = at.instant();
   for (const MeterFeed* const feed : feeds_) {
     const auto watch = meter_watches_.find(feed->id());
     if (feed->is_sensor() || watch == meter_watches_.end()) continue;
@@ -555,15 +631,14 @@ void Gateway::evaluate_meters() {
   }
 }
 
-void Gateway::evaluate_sensors() {
-  watch_clock(ports_.loop.now());
+void Gateway::evaluate_sensors(Instant now) {
   if (!clock_.is_believed()) return;
   for (auto& [sensor, watch] : watches_) {
     std::vector<const MeterProgress*> channels;
     for (const MeterProgress* const progress : all_progress()) {
       if (progress->channel && progress->channel->sensor == sensor) channels.push_back(progress);
     }
-    submit({.events = watch.evaluate(channels, ports_.loop.now().instant())});
+    submit({.events = watch.evaluate(channels, now)});
   }
 }
 

@@ -30,6 +30,7 @@
 #include "daemon/gateway/ingest/meter_message.hpp"
 #include "daemon/gateway/ingest/meter_watch.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
+#include "daemon/gateway/recording/entry.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
@@ -41,12 +42,15 @@ using OnEvent = std::function<void(const StoreEvent&)>;
 struct GatewayPorts {
   Loop& loop;
   Store& store;
+  /// Empty: no bus is opened and nothing is done by the hour, because a recording says what is read
+  /// (`take_read`) and when what is done (`tick`).
   std::function<std::unique_ptr<Bus>(const BusConfig&)> make_bus;
   std::string time_zone_release;
   std::uint64_t seed = 1;
   /// Absent: the loop's time is a trial's.
   std::optional<ClockEvidence> clock = {};
   OnEvent on_event = {};
+  recording::Listener* recorder = nullptr;  ///< Is told of all that comes in.
 };
 
 /// Called when a month has closed, or closed again.
@@ -99,6 +103,16 @@ class Gateway {
   /// @return whether it was taken; not_found for a meter that lacks such a value.
   [[nodiscard]] Result<bool> accept_mqtt(const MeterValue& value);
 
+  /// Takes a read of a recording at the loop's time, as if a bus had made it.
+  /// @return or unsupported, if this program makes no such read of that meter.
+  [[nodiscard]] Result<void> take_read(const recording::Read& read);
+
+  /// Does what falls due each minute or hour.
+  void tick(recording::Tick which);
+
+  /// All meters and channels of weather sensors.
+  [[nodiscard]] std::vector<StoredMeter> meters() const;
+
   /// Adds an event for people to find.
   void note(StoreEvent event) { submit({.events = {std::move(event)}}); }
 
@@ -128,7 +142,7 @@ class Gateway {
   /// Opens the buses of `site`, except those among `kept`.
   [[nodiscard]] Result<std::vector<std::unique_ptr<LiveBus>>> open_buses(
       const SiteConfig& site, std::span<const std::unique_ptr<LiveBus>> kept);
-  void start(LiveBus& bus);
+  void start(LiveBus& bus, metering::Instant now);
   [[nodiscard]] LiveBus::Ports ports_of(const LiveBus& bus) const;
   /// Opens the meters with source = "mqtt".
   [[nodiscard]] Result<std::vector<std::unique_ptr<MqttFeed>>> open_mqtt(const SiteConfig& site);
@@ -136,13 +150,16 @@ class Gateway {
   [[nodiscard]] Result<std::vector<std::unique_ptr<PushedFeed>>> open_pushed(
       const SiteConfig& site);
   void gather_feeds();
-  void note_doubt(MeterFeed& feed);
+  void note_doubt(MeterFeed& feed, metering::Instant now);
   /// Meters and weather sensors that stay are watched further.
   void watch_meters_of(const SiteConfig& site);
   void watch_sensors_of(const SiteConfig& site);
-  void evaluate_meters_every_minute();
-  void evaluate_meters();
-  void evaluate_sensors();
+  void tick_again(recording::Tick which, std::chrono::milliseconds every);
+  /// Tells the recorder. Call it after `watch_clock`, and before anything is done.
+  void tell(const Moment& at, recording::What what);
+  void tell_read(const MeterFeed& feed, const PolledRead& read);
+  void evaluate_meters(const Moment& at);
+  void evaluate_sensors(metering::Instant now);
   [[nodiscard]] MeterFeed* find_feed(std::uint32_t number);
   [[nodiscard]] std::vector<MeterProgress*> all_progress();
   [[nodiscard]] MeterProgress* find_progress(std::uint32_t number);
@@ -154,6 +171,7 @@ class Gateway {
   /// Passes a batch to the committer.
   void submit(StoreBatch batch);
   void take(MeterFeed& feed, const PolledRead& read);
+  void take_or_hold(MeterFeed& feed, const PolledRead& read);
   void take_at(MeterFeed& feed, const PolledRead& read, metering::Instant at);
   void watch_clock(const Moment& now);
   void release_held(const Moment& now);
@@ -170,11 +188,12 @@ class Gateway {
   void add_quantity(MeterStatus& status, const MeterProgress& progress,
                     std::optional<double> now) const;
   [[nodiscard]] double coverage_of(const MeterProgress& progress) const;
-  void close_months();
-  void close_months_of(std::vector<std::uint32_t> meters);
+  void close_months(const Moment& at);
+  void close_months_of(std::vector<std::uint32_t> meters, metering::Instant now);
   /// @return whether there may be more.
-  bool close_months_of(const MeterProgress& meter);
-  void close_months_every_hour();
+  bool close_months_of(const MeterProgress& meter, metering::Instant now);
+  /// Does it after whatever else waits for the loop.
+  void post_step(std::function<void(const Moment&)> step);
 
   metering::LocalCalendar calendar_;
   GatewayPorts ports_;

@@ -138,12 +138,14 @@ class GatewayRig {
                return std::make_unique<recald::testing::CounterBus>(runs_on_, devices_);
              },
          .time_zone_release = "2025b",
-         .clock = clock_},
+         .clock = clock_,
+         .recorder = recorder_},
         [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
           closed_.push_back({meter.id, figure, runs_on_.now().instant()});
         });
     if (!opened) return tl::unexpected(opened.error());
     gateway_ = std::move(*opened);
+    if (before_start_) before_start_();
     gateway_->start();
     return {};
   }
@@ -162,6 +164,8 @@ class GatewayRig {
   std::map<std::uint8_t, recald::testing::CounterDevice> devices_;  ///< By unit; of every bus.
   std::optional<ClockEvidence> clock_ =
       ClockEvidence{.released = std::chrono::sys_days{std::chrono::year{2024} / 1 / 1}};
+  recording::Listener* recorder_ = nullptr;
+  std::function<void()> before_start_;   ///< Of each gateway, when it is open.
   std::vector<std::string> buses_made_;  ///< Their names.
   std::vector<ClosedMonth> closed_;      ///< In order, all revisions.
   std::unique_ptr<Gateway> gateway_;
