@@ -20,7 +20,9 @@ struct SiteArguments {
 
 struct RunArguments {
   std::filesystem::path site;
-  std::string clock;  ///< "START@ANCHORxSPEED"; empty: the world's time.
+  std::string clock;             ///< "START@ANCHORxSPEED"; empty: the world's time.
+  std::filesystem::path record;  ///< A new file for what comes in; empty: none.
+  int record_max_MB = 200;
 };
 
 /// The daemon.
@@ -247,6 +249,8 @@ int run_doctor(const SiteArguments& arguments, const Console& console);
 /// The Modbus registers that a site serves, with their addresses.
 int run_registers(const RegistersArguments& arguments, const Console& console);
 int run_replay(const ReplayArguments& arguments, const Console& console);
+/// The same of a recording of `recald run --record`.
+int run_replay_recording(const ReplayArguments& arguments, const Console& console);
 /// Checks the store without changing it, beside a daemon if need be; a sentence a fault.
 int run_verify(const SiteArguments& arguments, const Console& console);
 /// The store's readings or months as CSV.

@@ -48,6 +48,9 @@ int run_model_revert(const ModelArguments&, const Console& console) { return not
 int run_model_show(const ModelArguments&, const Console& console) { return not_here(console); }
 int run_profile(const ProfileArguments&, const Console& console) { return not_here(console); }
 int run_registers(const RegistersArguments&, const Console& console) { return not_here(console); }
+int run_replay_recording(const ReplayArguments&, const Console& console) {
+  return not_here(console);
+}
 int run_report(const ReportArguments&, const Console& console) { return not_here(console); }
 int run_restore(const RestoreArguments&, const Console& console) { return not_here(console); }
 int run_run(const RunArguments&, const Console& console) { return not_here(console); }

@@ -416,6 +416,13 @@ void add_site_verbs(Verbs& verbs) {
   run.add_option("--clock", of_run.clock,
                  "For trials with simulated meters: START@ANCHORxSPEED, such as "
                  "2026-01-30T00:00:00Z@1769900000x600");
+  CLI::Option* const record = run.add_option(
+      "--record", of_run.record,
+      "New file for all that meters say, for a report of a fault; recald replay does it again");
+  run.add_option("--record-max-MB", of_run.record_max_MB, "Size at which the recording ends")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str()
+      ->needs(record);
 
   const auto status =
       verbs.add(kRun, "status", "Show what a running daemon is doing", run_status, misuse_of);
@@ -433,10 +440,16 @@ void add_site_verbs(Verbs& verbs) {
 
   const auto [replay, replayed] =
       verbs.add(kData, "replay", "Turn recorded readings into monthly figures", run_replay);
-  add_site(replay, replayed);
+  replay
+      .add_option("site", replayed.site, "Site file (TOML), or a recording of recald run --record")
+      ->required();
+  add_json(replay, replayed);
   replay.add_option("--from", replayed.from, "First local day, YYYY-MM-DD");
   replay.add_option("--to", replayed.to, "Last local day, YYYY-MM-DD");
-  replay.add_option("--out", replayed.out, "Folder for months.csv and the page of the meters");
+  replay.add_option(
+      "--out", replayed.out,
+      "Folder for months.csv and the page of the meters; of a recording, for readings.csv, "
+      "months.csv and events.jsonl");
 
   const auto [profile, profiled] = verbs.add(
       kData, "profile", "Read lighting and plug schedules off the electricity meter", run_profile);

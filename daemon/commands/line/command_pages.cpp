@@ -69,9 +69,14 @@ PageList gateway_pages() {
        "Polls the meters of a site, takes what others send, closes months, recalibrates, watches "
        "for drift, sends alerts and serves pages, until SIGTERM or SIGINT stops it. SIGHUP makes "
        "it read its site file again. It tells systemd when it is ready, and is usually started as "
-       "recald@SITE.service.",
-       {{"recald run site.toml", "In the foreground, to look at its log"}},
+       "recald@SITE.service. With --record it also writes everything that meters, other programs "
+       "and brokers say to a new file, which recald replay does again: for a report of a fault. "
+       "The file has the description of site, buses and meters, and no secrets. The daemon goes "
+       "on without it when the disk is full or --record-max-MB is reached, and says so.",
+       {{"recald run site.toml", "In the foreground, to look at its log"},
+        {"recald run site.toml --record fault.jsonl", "With a recording"}},
        {kPageSite,
+        {"FILE", "The recording, written if --record names one; never written over"},
         {"site.db", "The store, read and written; site.db.lock is held while it runs"},
         {"backups/", "A copy of the store each day, written"},
         {"site.models/", "Versions of the model, read and written"}}},
@@ -110,11 +115,20 @@ PageList reading_pages() {
       {"replay",
        "Reads the recorded readings of a site from beginning to end, as the daemon would have, and "
        "prints each month as it closes: daily energy, peak, measured share, and why a month is "
-       "unusable. With --out it writes the months as CSV and the page of the meters.",
+       "unusable. With --out it writes the months as CSV and the page of the meters. "
+       "A recording of recald run --record is told from a site file by its content: the same "
+       "gateway runs on it, without buses and on its clock, and gives the same intervals, which "
+       "are printed as recald export does, or written into --out with months and events. Where "
+       "this recald comes to other intervals than the one that recorded, it says which and fails.",
        {{"recald replay site.toml", "All months"},
         {"recald replay site.toml --from 2024-01-01 --to 2024-12-31 --out results",
-         "A year, into a folder"}},
-       {kPageSite, kPageData, kPageStore, {"months.csv, meters.html", "Written into --out"}}},
+         "A year, into a folder"},
+        {"recald replay fault.jsonl --out again", "A recording"}},
+       {kPageSite,
+        kPageData,
+        kPageStore,
+        {"months.csv, meters.html", "Written into --out"},
+        {"readings.csv, months.csv, events.jsonl", "Of a recording, written into --out"}}},
       {"profile",
        "Reads the schedules of lights and plugs off the electricity meter: its mean by kind of day "
        "and hour, and how certain that is.",

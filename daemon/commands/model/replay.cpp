@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "adapters/system/files/write_file.hpp"
@@ -59,6 +61,13 @@ nlohmann::ordered_json summary_json(const SiteConfig& site, const Recording& rec
           {"meters", meters}};
 }
 
+/// A site file cannot begin as a recording does.
+bool is_recording(const std::filesystem::path& file) {
+  if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored)) return false;
+  std::ifstream in{file, std::ios::binary};
+  return in.get() == '{';
+}
+
 std::string source_line(const MeterConfig& config, const MeterRecord& record) {
   if (config.source == MeterSource::sum) {
     return fmt::format("{}: {} readings every {} s ({})\n", record.meter.id, record.counts.accepted,
@@ -76,6 +85,7 @@ std::string source_line(const MeterConfig& config, const MeterRecord& record) {
 }  // namespace
 
 int run_replay(const ReplayArguments& arguments, const Console& console) {
+  if (is_recording(arguments.site)) return run_replay_recording(arguments, console);
   const auto from = parse_option("--from", arguments.from);
   if (!from) return console.misused(from.error().message);
   const auto to = parse_option("--to", arguments.to);

@@ -35,6 +35,8 @@ int run_run(const RunArguments& arguments, const Console& console) {
     if (!clock) return console.misused("--clock: " + clock.error().message);
     options.trial = *clock;
   }
+  options.record = arguments.record;
+  options.record_max_bytes = static_cast<std::uint64_t>(arguments.record_max_MB) * 1'000'000;
   if (console.detail == Console::Detail::little) spdlog::set_level(spdlog::level::warn);
   if (console.detail == Console::Detail::all) spdlog::set_level(spdlog::level::debug);
   const auto ended = run_service(std::move(*site), options);

@@ -29,6 +29,7 @@
 #include "daemon/gateway/alert/alerts.hpp"
 #include "daemon/gateway/alert/deliver.hpp"
 #include "daemon/gateway/forward/forwarding.hpp"
+#include "daemon/gateway/recording/recorder.hpp"
 #include "daemon/gateway/registers/register_table.hpp"
 #include "daemon/gateway/registers/register_watch.hpp"
 #include "daemon/gateway/run/gateway.hpp"
@@ -148,6 +149,7 @@ class Service {
 
   /// @param memory  What an earlier service kept in memory; may be null.
   Result<void> open(Store* memory) {
+    const auto recorder = create_recorder();
     auto gateway =
         Gateway::open(site_.config, site_.calendar,
                       {.loop = loop_,
@@ -159,7 +161,8 @@ class Service {
                        .time_zone_release = system::time_zone_release(),
                        .seed = std::random_device{}(),  // only for jitter, not for results
                        .clock = options_.trial ? std::nullopt : std::optional{clock_evidence()},
-                       .on_event = [this](const StoreEvent& event) { on_event(event); }},
+                       .on_event = [this](const StoreEvent& event) { on_event(event); },
+                       .recorder = recorder_.get()},
                       [this](const metering::Meter& meter, const metering::MonthlyFigure& figure) {
                         log_month(meter, figure);
                         if (facts_) facts_->refresh();
@@ -169,6 +172,11 @@ class Service {
     gateway_ = std::move(*gateway);
     if (memory != nullptr) {
       if (auto taken = gateway_->take_over(*memory, feed_watchdog); !taken) return taken;
+    }
+    if (!recorder) {
+      not_recorded(recorder.error().message);
+    } else if (recorder_) {
+      begin_recording();
     }
     return {};
   }
@@ -211,6 +219,7 @@ class Service {
     registers_.reset();
     jobs_.interrupt();
     const auto flushed = gateway_->flush();
+    if (recorder_) recorder_->end(found_ ? "the store could be opened" : "the daemon ended");
     spdlog::info("event=ended");
     return flushed;
   }
@@ -227,6 +236,31 @@ class Service {
  private:
   [[nodiscard]] std::shared_ptr<const SiteConfig> shared_config() const {
     return {shared_site_, &shared_site_->config};
+  }
+
+  Result<void> create_recorder() {
+    if (options_.record.empty()) return {};
+    recorder_ = TRY(recording::Recorder::create(
+        options_.record, options_.record_max_bytes, [this](const std::string& why) {
+          // Posted, because the gateway is in the middle of what was to be recorded.
+          loop_.post([this, why] {
+            gateway_->note({loop_.now().instant(), Severity::warning, "recording_ended", "",
+                            fmt::format("the recording '{}' has ended: {}; recald goes on without",
+                                        options_.record.string(), why)});
+          });
+        }));
+    return {};
+  }
+
+  void begin_recording() {
+    const auto begun = recorder_->begin({site_.config.file, kVersion, system::time_zone_release()},
+                                        *store_, site_.calendar, gateway_->meters());
+    if (!begun) not_recorded(begun.error().message);
+  }
+
+  void not_recorded(const std::string& why) {
+    gateway_->note({loop_.now().instant(), Severity::warning, "not_recorded", "",
+                    fmt::format("nothing is recorded: {}; recald goes on without", why)});
   }
 
   void stand_in() {
@@ -456,6 +490,7 @@ class Service {
   Watchdog watchdog_;
   Alerts alerts_;
   Forwarding forwarding_;
+  std::unique_ptr<recording::Recorder> recorder_;  ///< Null: none is asked for, or possible.
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<http::Server> server_;
   std::unique_ptr<modbus::RegisterServer> registers_;

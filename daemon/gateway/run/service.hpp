@@ -1,6 +1,8 @@
 /// The daemon as a process: real clocks, real buses, a store on disk, signals, HTTP.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 
 #include "core/metering/registers/trial_clock.hpp"
@@ -11,6 +13,10 @@ namespace recald::daemon {
 
 struct ServiceOptions {
   std::optional<metering::TrialClock> trial;  ///< Absent: real time.
+  /// A new file to which everything that comes in is written; empty: none. Whatever becomes of it,
+  /// the daemon goes on.
+  std::filesystem::path record;
+  std::uint64_t record_max_bytes = 0;
 };
 
 /// Runs until SIGTERM or SIGINT, then commits what is pending. SIGHUP reads the

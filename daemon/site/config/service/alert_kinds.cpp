@@ -31,6 +31,8 @@ constexpr std::array kKinds{
     AlertKind{"store_damaged", "The store is damaged", true},
     AlertKind{"backup_failed", "There is no new backup", true},
     AlertKind{"not_reloaded", "The site file was rejected", false},
+    AlertKind{"not_recorded", "Nothing is recorded", false},
+    AlertKind{"recording_ended", "The recording has ended", false},
     AlertKind{"month_not_closed", "A month could not be closed", false},
     AlertKind{"counter_reset", "A counter was reset", false},
     AlertKind{"counter_stuck", "A counter stands still", false},

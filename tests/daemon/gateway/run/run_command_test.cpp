@@ -1,6 +1,7 @@
 /// The real program against real sockets: it polls, is killed, goes on, and ends when it is told
 /// to.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -27,6 +28,7 @@ namespace {
 using namespace std::chrono_literals;
 using recald::testing::BackgroundProcess;
 using recald::testing::eventually;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class RunCommand : public recald::testing::PolledSite {
@@ -390,6 +392,83 @@ TEST_F(RunCommand, ASiteWithNothingToDoIsTold) {
   recald::testing::write_text(folder_ / "site.toml", site + "source = \"http\"\n");
   EXPECT_EQ((BackgroundProcess{command("run"), said()}.wait()), 1);
   EXPECT_THAT(what_was_said(), HasSubstr("no [http] to send its readings to"));
+}
+
+class RecordedCommand : public RunCommand {
+ protected:
+  RecordedCommand() { add_pushed_meter(); }
+
+  /// Four minutes in four seconds, so that there are intervals of one minute.
+  [[nodiscard]] std::vector<std::string> recording() const {
+    auto all = command("run");
+    const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+    for (const std::string& word :
+         {std::string{"--record"}, record().string(), std::string{"--clock"},
+          fmt::format("{}@{}x60", metering::to_string(now), now.time_since_epoch().count())}) {
+      all.push_back(word);
+    }
+    return all;
+  }
+  [[nodiscard]] std::filesystem::path record() const { return folder_ / "recording.jsonl"; }
+  [[nodiscard]] bool has_recorded(const std::string& words) const {
+    return recald::testing::read_text(record()).find(words) != std::string::npos;
+  }
+  void wait_for_intervals() const {
+    ASSERT_TRUE(eventually([&] {
+      return std::filesystem::exists(record()) && has_recorded("\"stored\":\"main\"");
+    })) << what_was_said();
+    EXPECT_THAT(push("12.5"), HasSubstr("HTTP/1.1 200"));
+    const std::size_t length = recald::testing::read_text(record()).size();
+    ASSERT_TRUE(eventually([&] {
+      const std::string text = recald::testing::read_text(record());
+      return text.find("\"stored\":\"main\"", length) != std::string::npos;
+    }));
+  }
+  /// What a command says on standard output.
+  [[nodiscard]] static std::string output(const std::string& line) {
+    const auto ended = recald::testing::run_in_shell(line);
+    EXPECT_EQ(ended.status, 0) << line;
+    return ended.said;
+  }
+};
+
+TEST_F(RecordedCommand, IsReplayedToTheSameReadings) {
+  BackgroundProcess daemon{recording(), said()};
+  wait_for_intervals();
+  EXPECT_EQ(daemon.end(SIGTERM), 0);
+  const std::string recald = std::string{RECALD_PROGRAM} + " ";
+  const std::string exported = output(recald + "export " + (folder_ / "site.toml").string());
+  EXPECT_THAT(exported, AllOf(HasSubstr(",main,"), HasSubstr(",chw,")));
+  EXPECT_EQ(output(recald + "replay " + record().string() + " 2> " + said().string()), exported);
+  EXPECT_THAT(what_was_said(), HasSubstr("intervals are as recorded"));
+  EXPECT_THAT(what_was_said(), HasSubstr("because the daemon ended"));
+  // On another machine.
+  std::filesystem::remove(folder_ / "site.toml");
+  std::filesystem::remove(folder_ / "counter.toml");
+  (void)output(recald + "replay " + record().string() + " --out " + (folder_ / "again").string());
+  EXPECT_EQ(recald::testing::read_text(folder_ / "again" / "readings.csv"), exported);
+}
+
+TEST_F(RecordedCommand, OfAKilledDaemonIsReplayedTo) {
+  BackgroundProcess daemon{recording(), said()};
+  wait_for_intervals();
+  daemon.end(SIGKILL);
+  const std::string again = output(std::string{RECALD_PROGRAM} + " replay " + record().string() +
+                                   " 2> " + said().string());
+  EXPECT_THAT(again, AllOf(HasSubstr(",main,"), HasSubstr(",chw,")));
+  EXPECT_THAT(what_was_said(), HasSubstr("the recording has no end"));
+  EXPECT_THAT(what_was_said(), HasSubstr("intervals are as recorded"));
+}
+
+// A gateway that cannot record says so, and polls.
+TEST_F(RecordedCommand, ThatCannotBeWrittenIsNoReasonToStop) {
+  recald::testing::write_text(record(), "of before");
+  recald::testing::write_text(said(), "");
+  BackgroundProcess daemon{recording(), said()};
+  ASSERT_TRUE(eventually([&] { return said_so("event=not_recorded") && samples() > 2; }))
+      << what_was_said();
+  EXPECT_EQ(daemon.end(SIGTERM), 0);
+  EXPECT_EQ(recald::testing::read_text(record()), "of before");
 }
 
 // A gateway without a bus: another program reads the meters and sends what it read.
