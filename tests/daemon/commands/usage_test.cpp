@@ -148,7 +148,9 @@ TEST(WrongUsage, IsOneSentenceAndTheCodeTwo) {
       {{"calibrate", "s", "--predictive"}, "recald: --predictive needs --out; add it"},
       {{"registers", "s", "--csv", "--json"},
        "recald: --csv cannot be given with --json; leave one of them out"},
-      {{"replay"}, "recald replay needs site (Site file (TOML)); see recald replay --help"},
+      {{"replay"},
+       "recald replay needs site (Site file (TOML), or a recording of recald run --record); see "
+       "recald replay --help"},
       {{"replay", "a", "b"}, "recald replay has no use for 'b'; see recald replay --help"},
       {{"model"},
        "recald model needs a command: list, show, apply, revert; see recald model --help"},
