@@ -34,6 +34,7 @@ milliseconds ClockWatch::look(const Moment& now) {
 }
 
 std::string ClockWatch::doubt_about(Instant now) const {
+  if (evidence_ && evidence_->recorded_doubt) return evidence_->recorded_doubt();
   const Instant first{std::chrono::sys_days{metering::kFirstKnownYear / std::chrono::January / 2}};
   if (now < first || now >= metering::kLatestInstant - kMonthsAhead) {
     return fmt::format("it says {}, but recald knows the years {}", metering::to_string(now),

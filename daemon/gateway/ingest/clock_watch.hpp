@@ -18,6 +18,8 @@ struct ClockEvidence {
   std::function<bool()> is_settling = {};
   /// Whether a time server sets the clock. Absent: none does.
   std::function<bool()> is_synchronised = {};
+  /// In a replay: what ClockWatch::doubt() was, instead of all the above.
+  std::function<std::string()> recorded_doubt = {};
 };
 
 class ClockWatch {

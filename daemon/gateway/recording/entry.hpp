@@ -59,7 +59,8 @@ using What = std::variant<Start, Read, Push, Value, Tick, Reload>;
 
 struct Entry {
   Moment at;
-  bool is_clock_ok;  ///< Whether the clock is trusted, after it was looked at.
+  std::string
+      clock_doubt;  ///< Why the clock is not believed, after it was looked at; empty: it is.
   What what;
 };
 

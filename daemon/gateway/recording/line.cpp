@@ -126,7 +126,7 @@ Json json_of_line(const End& end) { return {{"end", end.why}, {"whole", end.is_w
 Json json_of_line(const Entry& entry) {
   Json json = {{"wall_ms", entry.at.wall.time_since_epoch().count()},
                {"monotonic_ms", entry.at.monotonic.count()}};
-  if (!entry.is_clock_ok) json["clock"] = "doubted";
+  if (!entry.clock_doubt.empty()) json["clock_doubt"] = entry.clock_doubt;
   std::visit([&](const auto& what) { add(json, what); }, entry.what);
   return json;
 }
@@ -241,7 +241,9 @@ Tick read_tick(StrictReader& reader, const Parsed& json) {
 Entry read_entry(StrictReader& reader, const Parsed& json) {
   Entry entry{.at = {.wall = WallTime{read_ms(reader, json, "wall_ms")},
                      .monotonic = read_ms(reader, json, "monotonic_ms")},
-              .is_clock_ok = !json.contains("clock"),
+              .clock_doubt = json.contains("clock_doubt")
+                                 ? reader.member<std::string>(json, "clock_doubt")
+                                 : "",
               .what = Start{}};
   if (json.contains("read")) {
     entry.what = read_read(reader, json);

@@ -85,7 +85,7 @@ void Recorder::reloaded(const Entry& at, const SiteConfig& site) {
   if (const auto written = write_site(site.file); !written) {
     return give_up("the site file cannot be recorded: " + written.error().message);
   }
-  write(Entry{at.at, at.is_clock_ok, Reload{}});
+  write(Entry{at.at, at.clock_doubt, Reload{}});
 }
 
 void Recorder::stored(const std::string& meter, const metering::Reading& reading) {

@@ -146,7 +146,7 @@ class Replayer {
       return failure(ErrorCode::malformed, "'monotonic_ms' runs back");
     }
     loop_.advance_to(entry.at);
-    is_clock_ok_ = entry.is_clock_ok;
+    clock_doubt_ = entry.clock_doubt;
     if (!replayed_.begin) replayed_.begin = entry.at.instant();
     replayed_.end = entry.at.instant();
     return std::visit([&](auto& what) { return act(std::move(what)); }, entry.what);
@@ -164,14 +164,15 @@ class Replayer {
   Result<void> act(recording::Start) {
     replayed_.site = TRY(read_site());
     const auto calendar = TRY(metering::LocalCalendar::open(replayed_.site.timezone));
-    gateway_ = TRY(Gateway::open(replayed_.site, calendar,
-                                 {.loop = loop_,
-                                  .store = store_,
-                                  .make_bus = {},
-                                  .time_zone_release = time_zone_release_,
-                                  .is_clock_settling = [this] { return !is_clock_ok_; },
-                                  .recorder = &made_},
-                                 {}));
+    gateway_ = TRY(Gateway::open(
+        replayed_.site, calendar,
+        {.loop = loop_,
+         .store = store_,
+         .make_bus = {},
+         .time_zone_release = time_zone_release_,
+         .clock = ClockEvidence{.released = {}, .recorded_doubt = [this] { return clock_doubt_; }},
+         .recorder = &made_},
+        {}));
     gateway_->start();
     return {};
   }
@@ -279,7 +280,7 @@ class Replayer {
   bool is_begun_ = false;
   bool is_ended_ = false;
   bool is_whole_ = false;
-  bool is_clock_ok_ = false;
+  std::string clock_doubt_;
   std::string time_zone_release_;
   std::string site_text_;  ///< Of the next start or reload, as are its maps.
   MapTexts maps_;

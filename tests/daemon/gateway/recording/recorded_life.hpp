@@ -77,7 +77,7 @@ class RecordedLife : private RigInMemory {
     recald::testing::write_text(folder_ / "station.toml", kStationMap);
     if (rng_.below(3) == 0) {
       const auto until = after(std::chrono::minutes{40});
-      is_clock_settling_ = [this, until] { return loop_.now().monotonic < until; };
+      clock_->is_settling = [this, until] { return loop_.now().monotonic < until; };
     }
     for (std::uint8_t unit = 1; unit <= 3; ++unit) give_faults(unit);
     devices_[3].registers = [](milliseconds t) {
