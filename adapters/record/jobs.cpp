@@ -326,10 +326,10 @@ Result<int> rerun(Connection& connection, const std::vector<FleetJob>& jobs,
       texts.add(fmt::format("{} of {}", recald::name_of(job.kind), metering::to_string(job.month)));
     }
     count = TRY(put_jobs(connection, again, IfThere::run_again));
-    TRY(connection.run(
-        "INSERT INTO audit (time, who, action, subject, text) SELECT now(), $1, 'rerun', * "
-        "FROM unnest($2::text[], $3::text[])",
-        {who, subjects.parameter(), texts.parameter()}));
+    TRY(
+        connection.run("INSERT INTO audit (who, action, subject, text) SELECT $1, 'rerun', * "
+                       "FROM unnest($2::text[], $3::text[])",
+                       {who, subjects.parameter(), texts.parameter()}));
     return {};
   });
   if (!done) return tl::unexpected(done.error());

@@ -182,13 +182,24 @@ SELECT recald_make_partition('interval_before', NULL, '{1:04}-01-01');
 SELECT recald_make_partition('interval_beyond', '{2:04}-01-01', NULL);
 )";
 
+/// What a later version of the tables changed: the first makes version 2 of version 1. New tables
+/// go through all of them, too.
+constexpr auto kUpgrades = std::to_array<const char*>({
+    // Whoever may write the audit can claim any name in `who`. The server fills in `role`, and
+    // nobody's grants have it; of earlier rows it is not known.
+    "ALTER TABLE audit ADD COLUMN role text NOT NULL DEFAULT '';"
+    "ALTER TABLE audit ALTER COLUMN role SET DEFAULT session_user;"
+    "ALTER TABLE audit ALTER COLUMN time SET DEFAULT now()",
+});
+static_assert(kUpgrades.size() + 1 == kSchemaVersion);
+
 struct Role {
   const char* name;
   const char* grants;
 };
 /// What a leaked password of an ingester is good for: rows as gateways send them. It names no site,
-/// changes no version, reads no file of one, and gives no result for a worker's. What an earlier
-/// release granted is taken back.
+/// changes no version, reads no file of one, and gives no result for a worker's. A worker's row in
+/// the audit says whose it is and when it came. What an earlier release granted is taken back.
 constexpr auto kRoles = std::to_array<Role>({
     {"recald_ingest",
      "REVOKE ALL ON ALL TABLES IN SCHEMA {schema} FROM recald_ingest;"
@@ -204,9 +215,10 @@ constexpr auto kRoles = std::to_array<Role>({
      "GRANT UPDATE (outbox, entries, events, results) ON source TO recald_ingest;"
      "GRANT EXECUTE ON FUNCTION recald_make_partition TO recald_ingest"},
     {"recald_worker",
+     "REVOKE ALL ON ALL TABLES IN SCHEMA {schema} FROM recald_worker;"
      "GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO recald_worker;"
-     "GRANT INSERT ON job, result, result_file, site_state, file, file_part, audit TO "
-     "recald_worker;"
+     "GRANT INSERT ON job, result, result_file, site_state, file, file_part TO recald_worker;"
+     "GRANT INSERT (who, action, subject, text) ON audit TO recald_worker;"
      "GRANT UPDATE ON job TO recald_worker;"
      "GRANT DELETE ON site_state TO recald_worker"},
     {"recald_read", "GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO recald_read"},
@@ -226,6 +238,23 @@ Error newer(int version) {
       fmt::format("the record has schema {}, and this recald knows {}: use the recald that made "
                   "it, or a newer one",
                   version, kSchemaVersion)};
+}
+
+/// Version 1.
+Result<void> make_tables(postgres::Connection& connection) {
+  TRY(connection.run_all(kTables));
+  TRY(connection.run_all(fmt::format(fmt::runtime(kPartitions), kLock,
+                                     static_cast<int>(kYear_first),
+                                     static_cast<int>(kYear_last) + 1)));
+  return connection.run_all("INSERT INTO fleet VALUES (1)");
+}
+
+Result<void> upgrade(postgres::Connection& connection, int version) {
+  for (; version < kSchemaVersion; ++version) {
+    TRY(connection.run_all(kUpgrades[static_cast<std::size_t>(version - 1)]));
+    TRY(connection.run_all(fmt::format("UPDATE fleet SET schema_version = {}", version + 1)));
+  }
+  return {};
 }
 
 /// Each role by itself: without the right to make one, the others may be there.
@@ -259,13 +288,8 @@ Result<std::string> make_schema(postgres::Connection& connection) {
     }
     const auto version = TRY(version_of(connection));
     if (version > kSchemaVersion) return tl::unexpected(newer(version));
-    if (version == kSchemaVersion) return {};
-    if (auto tables = connection.run_all(kTables); !tables) return tables;
-    auto partitions = connection.run_all(fmt::format(fmt::runtime(kPartitions), kLock,
-                                                     static_cast<int>(kYear_first),
-                                                     static_cast<int>(kYear_last) + 1));
-    if (!partitions) return partitions;
-    return connection.run_all(fmt::format("INSERT INTO fleet VALUES ({})", kSchemaVersion));
+    if (version == 0) TRY(make_tables(connection));
+    return upgrade(connection, std::max(version, 1));
   }));
   return grant_roles(connection);
 }
@@ -274,6 +298,12 @@ Result<void> check_schema(postgres::Connection& connection) {
   const auto version = TRY(version_of(connection));
   if (version == kSchemaVersion) return {};
   if (version > kSchemaVersion) return tl::unexpected(newer(version));
+  if (version > 0) {
+    return failure(ErrorCode::unsupported,
+                   fmt::format("the record has schema {}, and this recald needs {}: bring it up to "
+                               "date with recald fleet init",
+                               version, kSchemaVersion));
+  }
   return failure(ErrorCode::unsupported,
                  "the database has no record of a fleet yet: make it with recald fleet init");
 }

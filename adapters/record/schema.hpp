@@ -9,9 +9,10 @@
 
 namespace recald::record {
 
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 
-/// Makes what is missing. May be repeated, also by two at once.
+/// Makes what is missing, and brings tables of an earlier version up to date. May be repeated, also
+/// by two at once.
 /// @return a sentence about what could not be done and is not needed to go on: roles; empty: all is
 ///         there. Or unsupported: a newer recald made it; malformed: the user may not make tables.
 [[nodiscard]] Result<std::string> make_schema(postgres::Connection& connection);

@@ -97,7 +97,7 @@ Result<SiteVersion> put_version(postgres::Connection& connection, const SiteDesc
   TRY(connection.run("UPDATE site SET version = $2 WHERE number = $1",
                      {integer(number), integer(version.number)}));
   TRY(connection.run(
-      "INSERT INTO audit (time, who, action, subject, text) VALUES (now(), $1, 'put_site', $2, $3)",
+      "INSERT INTO audit (who, action, subject, text) VALUES ($1, 'put_site', $2, $3)",
       {who, site.id, fmt::format("version {}, {}", version.number, version.sha256)}));
   return version;
 }
@@ -118,8 +118,8 @@ Result<void> retire_site(postgres::Connection& connection, const std::string& si
                          const std::string& who) {
   const auto done = TRY(connection.run(
       "WITH retired AS (UPDATE site SET retired = now() WHERE id = $1 AND retired IS NULL "
-      "RETURNING id) INSERT INTO audit (time, who, action, subject, text) "
-      "SELECT now(), $2, 'retire_site', id, '' FROM retired",
+      "RETURNING id) INSERT INTO audit (who, action, subject, text) "
+      "SELECT $2, 'retire_site', id, '' FROM retired",
       {site, who}));
   if (done.affected() == 0) return tl::unexpected(unknown_site(site));
   return {};
@@ -165,16 +165,9 @@ Result<SiteDescription> site_of_version(postgres::Connection& connection, const 
   return read;
 }
 
-Result<void> audit(postgres::Connection& connection, const AuditEntry& entry) {
-  TRY(connection.run(
-      "INSERT INTO audit (time, who, action, subject, text) VALUES ($1, $2, $3, $4, $5)",
-      {parameter(entry.time), entry.who, entry.action, entry.subject, entry.text}));
-  return {};
-}
-
 Result<std::vector<AuditEntry>> audited(postgres::Connection& connection, int limit) {
   const auto rows = TRY(connection.run(
-      "SELECT extract(epoch FROM time)::bigint, who, action, subject, text FROM audit "
+      "SELECT extract(epoch FROM time)::bigint, who, action, subject, text, role FROM audit "
       "ORDER BY number DESC LIMIT $1",
       {integer(limit)}));
   std::vector<AuditEntry> entries;
@@ -183,7 +176,8 @@ Result<std::vector<AuditEntry>> audited(postgres::Connection& connection, int li
                        .who = std::string{rows.text(i, 1)},
                        .action = std::string{rows.text(i, 2)},
                        .subject = std::string{rows.text(i, 3)},
-                       .text = std::string{rows.text(i, 4)}});
+                       .text = std::string{rows.text(i, 4)},
+                       .role = std::string{rows.text(i, 5)}});
   }
   return entries;
 }

@@ -62,10 +62,11 @@ struct RecordedSite {
 
 struct AuditEntry {
   metering::Instant time;
-  std::string who, action, subject, text;
+  std::string who;  ///< As the program said that wrote it.
+  std::string action, subject, text;
+  std::string role;  ///< Of the database, which wrote it, as the server knows; empty: not known.
 };
 
-[[nodiscard]] Result<void> audit(postgres::Connection& connection, const AuditEntry& entry);
 /// Newest first.
 [[nodiscard]] Result<std::vector<AuditEntry>> audited(postgres::Connection& connection, int limit);
 

@@ -499,10 +499,11 @@ Response audit_page(const FleetServed& served) {
   const auto entries = record::audited(served.record, kAuditShown);
   if (!entries) return unavailable(entries.error());
   Table table{"What was done, newest first"};
-  table.with_labels().columns({"When", "Who", "What", "To", ""});
+  table.with_labels().columns({"When", "Who", "As", "What", "To", ""});
   for (const record::AuditEntry& entry : *entries) {
     table.row({{metering::to_string(entry.time)},
                {entry.who},
+               {entry.role},
                {entry.action},
                {entry.subject},
                {entry.text}});

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "adapters/stores/open.hpp"
 #include "tests/adapters/record/record_fixture.hpp"
 
 namespace recald::record {
@@ -90,6 +91,39 @@ TEST_F(Record, JobsOfASiteRunOneByOneInOrderOfTheirMonths) {
   EXPECT_EQ(third->month, month_of(2024, 4));
   EXPECT_THAT(*job_counts(*connection_),
               UnorderedElementsAre(Pair(FleetJobState::running, 2), Pair(FleetJobState::done, 1)));
+}
+
+TEST_F(Record, AWorkerNeedsNoMoreThanItsRole) {
+  Jobs{*connection_}.close("tower", {3, 4});
+  const auto own = open_as("recald_worker", "plain_worker");
+  Jobs jobs{*own};
+  const auto march = jobs.lease();
+  ASSERT_TRUE(march);
+  EXPECT_TRUE(renew(*own, *march, jobs.rules).value());
+  EXPECT_TRUE(state_before(*own, *march));
+  EXPECT_TRUE(site_of_version(*own, "tower", march->site_version));
+  const auto store = stores::open_in_memory();
+  EXPECT_TRUE(copy_into(**store, *own, "tower", march->until_seq));
+  auto result = result_of("march");
+  result.next = JobKind::diagnosis;
+  EXPECT_TRUE(finish(*own, *march, result).value());
+  const auto next = jobs.lease();
+  ASSERT_TRUE(next);
+  EXPECT_TRUE(hand_back(*own, *next).value());
+  const auto again = jobs.lease();
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(fail(*own, *again, "no weather").value());
+  const auto last = jobs.lease();
+  ASSERT_TRUE(last);
+  EXPECT_TRUE(give_back(*own, *last, "killed", jobs.rules).value());
+  EXPECT_EQ(rerun(*own, {*march}, "ann").value(), 1);
+  EXPECT_EQ(ask("SELECT who, role FROM audit WHERE action = 'rerun'"), "ann|plain_worker\n");
+  for (const char* too_much :
+       {"UPDATE result SET accepted = true", "DELETE FROM job", "UPDATE site SET version = 7",
+        "DELETE FROM interval", "INSERT INTO site (id, version, added) VALUES ('x', 1, now())"}) {
+    EXPECT_FALSE(own->run(too_much)) << too_much;
+  }
+  leave("plain_worker");
 }
 
 TEST_F(Record, AJobBeginsWithTheSameStateHoweverOftenItRuns) {

@@ -112,6 +112,18 @@ class Record : public ::testing::Test {
     if (!opened) throw std::runtime_error(opened.error().message);
     return std::move(*opened);
   }
+  /// As a user who has one role and nothing else; `leave` removes it again.
+  [[nodiscard]] std::unique_ptr<postgres::Connection> open_as(const std::string& role,
+                                                              const std::string& user) const {
+    (void)ask("CREATE USER " + user + " IN ROLE " + role);
+    auto opened = postgres::Connection::open("postgresql://" + user +
+                                                 "@127.0.0.1:" + std::to_string(server_->port()) +
+                                                 url_.substr(url_.rfind('/')),
+                                             "");
+    if (!opened) throw std::runtime_error(opened.error().message);
+    return std::move(*opened);
+  }
+  void leave(const std::string& user) const { (void)ask("DROP USER " + user); }
   /// What another program reads.
   [[nodiscard]] std::string ask(const std::string& statement) const {
     return server_->ask(statement, url_.substr(url_.rfind('/') + 1));

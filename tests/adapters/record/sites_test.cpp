@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/adapters/record/record_fixture.hpp"
 
@@ -64,21 +66,16 @@ TEST_F(Record, WithoutTheRightToMakeRolesTheRestIsThere) {
 }
 
 TEST_F(Record, AnIngesterNeedsNoMoreThanItsRole) {
-  (void)ask("CREATE USER plain_ingester IN ROLE recald_ingest");
-  auto opened = postgres::Connection::open(
-      "postgresql://plain_ingester@127.0.0.1:" + std::to_string(server_->port()) +
-          url_.substr(url_.rfind('/')),
-      "");
-  ASSERT_TRUE(opened) << opened.error().message;
+  const auto own = open_as("recald_ingest", "plain_ingester");
   auto batch = intervals(0, 3);
   batch.entries.push_back(month_entry(4, "steam", month_of(2024, 3), 1.0));
   batch.entries.push_back(month_entry(5, "power", month_of(2024, 3), 1.0));
   batch.events.push_back({.time = kNow, .kind = "reset", .text = "was reset", .number = 1});
   batch.results.push_back({.number = 1, .asked = kNow});
-  const auto taken = take(**opened, "tower", batch, kNow);
+  const auto taken = take(*own, "tower", batch, kNow);
   EXPECT_TRUE(taken) << taken.error().message;
   EXPECT_EQ(ask("SELECT count(*) FROM job"), "1\n");
-  EXPECT_FALSE((*opened)->run("DELETE FROM interval"));
+  EXPECT_FALSE(own->run("DELETE FROM interval"));
   for (const char* too_much :
        {"UPDATE interval SET mean_kw = 1", "UPDATE site SET id = 'mine'",
         "UPDATE site SET version = 7", "UPDATE site SET retired = now()", "SELECT * FROM site_file",
@@ -90,9 +87,68 @@ TEST_F(Record, AnIngesterNeedsNoMoreThanItsRole) {
         "SELECT site, number, kind, month, now(), true, true, '', '', '' FROM job",
         "INSERT INTO audit (time, who, action, subject, text) VALUES (now(), 'a', 'b', 'c', 'd')",
         "INSERT INTO site (id, version, added) VALUES ('more', 1, now())"}) {
-    EXPECT_FALSE((*opened)->run(too_much)) << too_much;
+    EXPECT_FALSE(own->run(too_much)) << too_much;
   }
-  (void)ask("DROP USER plain_ingester");
+  leave("plain_ingester");
+}
+
+// Everything that a login could try in order to stand in the audit as another, or at another time.
+TEST_F(Record, NobodyWritesTheAuditAsSomebodyElse) {
+  const auto own = open_as("recald_worker", "plain_worker");
+  const std::string rest = "action, subject, text) VALUES ('ann', ";
+  for (const auto& forged : std::vector<std::string>{
+           "INSERT INTO audit (who, role, " + rest + "'recald', 'b', 'c', 'd')",
+           "INSERT INTO audit (who, time, " + rest + "'2001-01-01', 'b', 'c', 'd')",
+           "INSERT INTO audit (who, number, " + rest + "1, 'b', 'c', 'd')",
+           "INSERT INTO audit OVERRIDING SYSTEM VALUE SELECT * FROM audit",
+           "UPDATE audit SET role = 'plain_worker'", "UPDATE audit SET who = 'bob', text = ''",
+           "DELETE FROM audit", "TRUNCATE audit", "ALTER TABLE audit ALTER role DROP DEFAULT",
+           "SET SESSION AUTHORIZATION recald"}) {
+    EXPECT_FALSE(own->run(forged)) << forged;
+  }
+  const std::string claim = "INSERT INTO audit (who, " + rest + "'retire_site', 'tower', '')";
+  EXPECT_TRUE(own->run_all(claim));
+  EXPECT_TRUE(own->run_all("SET ROLE recald_worker; " + claim));
+  EXPECT_EQ(
+      ask("SELECT role, now() - time < '1 hour' FROM audit WHERE who = 'ann' ORDER BY number"),
+      "recald|t\nplain_worker|t\nplain_worker|t\n");
+  const auto entries = audited(*connection_, 3);
+  ASSERT_TRUE(entries) << entries.error().message;
+  EXPECT_EQ(entries->at(0).role, "plain_worker");
+  EXPECT_EQ(entries->at(2).role, "recald");
+  const auto reader = open_as("recald_read", "plain_reader");
+  EXPECT_TRUE(audited(*reader, 1));
+  EXPECT_FALSE(reader->run(claim));
+  leave("plain_reader");
+  leave("plain_worker");
+}
+
+// A record of version 1, as it was made before: its rows stay, and what its roles could do is taken
+// back.
+TEST_F(Record, AnEarlierVersionIsBroughtUpToDate) {
+  for (const char* step :
+       {"ALTER TABLE audit DROP COLUMN role", "ALTER TABLE audit ALTER COLUMN time DROP DEFAULT",
+        "UPDATE fleet SET schema_version = 1", "GRANT INSERT ON audit TO recald_worker",
+        "DELETE FROM audit",
+        "INSERT INTO audit (time, who, action, subject, text) VALUES ('2024-01-01', 'ann', "
+        "'put_site', 'tower', 'version 1')"}) {
+    ASSERT_EQ(ask(step).find("ERROR"), std::string::npos) << step;
+  }
+  const auto old = check_schema(*connection_);
+  ASSERT_FALSE(old);
+  EXPECT_EQ(old.error().code, ErrorCode::unsupported);
+  EXPECT_THAT(old.error().message, HasSubstr("schema 1"));
+  EXPECT_THAT(old.error().message, HasSubstr("recald fleet init"));
+  for (int again = 0; again < 2; ++again) EXPECT_EQ(make_schema(*connection_).value(), "");
+  EXPECT_TRUE(check_schema(*connection_));
+  ASSERT_TRUE(put_site(*connection_, described("annex"), "bob"));
+  EXPECT_EQ(ask("SELECT who, role, subject FROM audit ORDER BY number"),
+            "ann||tower\nbob|recald|annex\n");
+  const auto own = open_as("recald_worker", "late_worker");
+  EXPECT_FALSE(
+      own->run("INSERT INTO audit (time, who, action, subject, text) VALUES (now(), 'a', "
+               "'b', 'c', 'd')"));
+  leave("late_worker");
 }
 
 TEST_F(Record, ASiteIsVersionedByItsContent) {
