@@ -1,5 +1,5 @@
 #!/bin/sh
-# The unit file: systemd understands it and finds its sandbox good (exposure at most 2.0 of 10).
+# The unit file: systemd understands it and finds its sandbox good (exposure at most 2.0 of 10), and its memory has a limit.
 #
 #   check_unit.sh UNIT PROGRAM
 set -eu
@@ -12,6 +12,7 @@ sed "s#/usr/bin/recald#$program#" "$unit" > "$place/recald@tower-3.service"
 
 said=$(systemd-analyze verify "$place/recald@tower-3.service" 2>&1) || { echo "$said"; exit 1; }
 [ -z "$said" ] || { echo "$said"; exit 1; }
+grep -q "^MemoryMax=[1-9]" "$unit" || { echo "$unit has no MemoryMax"; exit 1; }
 # The threshold counts in tenths.
 said=$(systemd-analyze security --offline=true --threshold=20 "$place/recald@tower-3.service") || {
   echo "$said"
