@@ -55,6 +55,17 @@ metering::CounterPhase phase_of(const Json& json) {
   throw std::invalid_argument("a counter has no phase '" + text + "'");
 }
 
+metering::FallRun falls_of(const Json& json) {
+  return {.before = sample_of(json.at("before")),
+          .last = sample_of(json.at("last")),
+          .samples = json.at("samples").get<int>(),
+          .falls = json.at("falls").get<int>(),
+          .deep = json.at("deep").get<int>(),
+          .cubes_kWh3 = number_or(json.at("cubes"), 0.0),
+          .sixths_kWh6 = number_or(json.at("sixths"), 0.0),
+          .is_no_total = json.at("is_no_total").get<bool>()};
+}
+
 CounterState counter_of(const Json& json) {
   CounterState counter;
   counter.phase = phase_of(json.at("phase"));
@@ -69,6 +80,7 @@ CounterState counter_of(const Json& json) {
                        pending.at("samples").get<int>()};
   }
   for (const Json& t : json.at("restarts")) counter.restarts.push_back(instant_of(t));
+  if (json.contains("falls")) counter.falls = falls_of(json.at("falls"));
   return counter;
 }
 
@@ -133,8 +145,17 @@ class Writer {
         .word(to_string(piece.validity))
         .raw("}");
   }
+  Writer& falls(const metering::FallRun& run) {
+    raw("{\"before\":").sample(run.before);
+    raw(",\"cubes\":").number(run.cubes_kWh3).raw(",\"deep\":").whole(run.deep);
+    raw(",\"falls\":").whole(run.falls);
+    raw(",\"is_no_total\":").raw(run.is_no_total ? "true" : "false");
+    raw(",\"last\":").sample(run.last).raw(",\"samples\":").whole(run.samples);
+    return raw(",\"sixths\":").number(run.sixths_kWh6).raw("}");
+  }
   Writer& counter(const CounterState& counter) {
     raw("{\"baseline\":").sample(counter.baseline);
+    if (counter.falls) raw(",\"falls\":").falls(*counter.falls);
     if (counter.pending) {
       raw(",\"pending\":{\"first\":").sample(counter.pending->first);
       raw(",\"last\":").sample(counter.pending->last);

@@ -16,19 +16,15 @@ constexpr int kConfirmSamples = 3;
 constexpr seconds kConfirmTime{120};
 constexpr seconds kPreviousKept{7 * 86'400};
 constexpr double kRolloverFrom = 0.9;  // of the modulus
+constexpr double kJitterSteps = 2.5;   // two: near 1e5 a difference of two is rounded up or down
 constexpr std::size_t kErraticRestarts = 10;
 constexpr seconds kErraticTime{3600};
 
-/// A: the most by which the register can have risen.
-double rise_max_kWh(seconds span, const CounterSettings& settings) {
-  return kRatedMargin * settings.rated_kW * in_hours(span) + 2.0 * settings.resolution_kWh;
-}
-
-/// "v fits X": −2r <= v − X <= A since X.
+/// "v fits X": −2r, and what rounding makes of it, <= v − X <= A since X.
 bool fits(const RegisterSample& sample, const RegisterSample& line,
           const CounterSettings& settings) {
   const double rise_kWh = sample.value_kWh - line.value_kWh;
-  return rise_kWh >= -2.0 * settings.resolution_kWh &&
+  return rise_kWh >= -kJitterSteps * settings.resolution_kWh &&
          rise_kWh <= rise_max_kWh(sample.time - line.time, settings);
 }
 
@@ -57,8 +53,8 @@ class Transition {
       believe(sample_);
       return step_;
     }
-    (void)(uncountable() || plain_rise() || jitter() || rollover() || first_contradiction() ||
-           agrees_with_pending() || start_pending_again());
+    (void)(no_total() || uncountable() || plain_rise() || jitter() || rollover() ||
+           first_contradiction() || agrees_with_pending() || start_pending_again());
     return step_;
   }
 
@@ -67,6 +63,32 @@ class Transition {
     step_.state.baseline = sample;
     step_.state.phase = CounterPhase::run;
     step_.state.pending.reset();
+  }
+
+  /// The read before this one, believed or not.
+  [[nodiscard]] const RegisterSample& last() const {
+    return step_.state.pending ? step_.state.pending->last : step_.state.baseline;
+  }
+
+  bool no_total() {
+    if (has_rolled_over()) {
+      step_.state.falls.reset();
+      return false;
+    }
+    std::optional<FallRun>& falls = step_.state.falls;
+    const bool was_known = falls && falls->is_no_total;
+    const RegisterSample previous = falls ? falls->last : last();
+    watch_falls(falls, previous, sample_,
+                {.rise_max_kWh = rise_max_kWh(sample_.time - previous.time, settings_),
+                 .jitter_kWh = kJitterSteps * settings_.resolution_kWh});
+    if (!falls || !falls->is_no_total) return false;
+    const Instant since = was_known ? step_.state.baseline.time : falls->before.time;
+    step_.bookings.push_back(unbooked(since, sample_.time, Reason::reset));
+    step_.bookings.back().supersedes = !was_known;
+    if (!was_known) step_.event = CounterEvent::no_total;
+    step_.state.previous.reset();
+    believe(sample_);
+    return true;
   }
 
   bool uncountable() {
@@ -106,17 +128,22 @@ class Transition {
   }
 
   bool jitter() {
-    if (rise_kWh_ >= 0.0 || rise_kWh_ < -2.0 * settings_.resolution_kWh) return false;
+    if (rise_kWh_ >= 0.0 || rise_kWh_ < -kJitterSteps * settings_.resolution_kWh) return false;
     step_.bookings.push_back(measured(step_.state.baseline, sample_, 0.0));
     believe({sample_.time, step_.state.baseline.value_kWh});  // so that the dip is not booked again
     return true;
   }
 
-  bool rollover() {
+  [[nodiscard]] bool has_rolled_over() const {
     const bool possible = step_.state.phase != CounterPhase::high && rise_kWh_ < 0.0 &&
                           step_.state.baseline.value_kWh > kRolloverFrom * settings_.modulus_kWh;
     const double wrapped_kWh = rise_kWh_ + settings_.modulus_kWh;
-    if (!possible || wrapped_kWh < 0.0 || wrapped_kWh > rise_max_kWh_) return false;
+    return possible && wrapped_kWh >= 0.0 && wrapped_kWh <= rise_max_kWh_;
+  }
+
+  bool rollover() {
+    if (!has_rolled_over()) return false;
+    const double wrapped_kWh = rise_kWh_ + settings_.modulus_kWh;
     step_.bookings.push_back(measured(step_.state.baseline, sample_, wrapped_kWh));
     step_.bookings.back().reasons = Reason::rollover;
     believe(sample_);
@@ -198,6 +225,10 @@ class Transition {
 };
 
 }  // namespace
+
+double rise_max_kWh(seconds span, const CounterSettings& settings) {
+  return kRatedMargin * settings.rated_kW * in_hours(span) + 2.0 * settings.resolution_kWh;
+}
 
 CounterStep advance(CounterState state, const RegisterSample& sample,
                     const CounterSettings& settings) {

@@ -1,12 +1,14 @@
 /// Books energy from a cumulative register that wraps, bounces, jitters and is reset.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "core/metering/reading.hpp"
+#include "core/metering/registers/fall_run.hpp"
 
 namespace recald::metering {
 
@@ -16,11 +18,8 @@ struct CounterSettings {
   double modulus_kWh = std::numeric_limits<double>::infinity();  ///< M: where it wraps.
 };
 
-struct RegisterSample {
-  Instant time;
-  double value_kWh;  ///< NaN or infinite: a failed read.
-  bool operator==(const RegisterSample&) const = default;
-};
+/// A: the most by which the register can have risen in that time.
+[[nodiscard]] double rise_max_kWh(std::chrono::seconds span, const CounterSettings& settings);
 
 enum class CounterPhase : std::uint8_t {
   empty,  ///< No baseline yet.
@@ -29,7 +28,16 @@ enum class CounterPhase : std::uint8_t {
   high,   ///< The register rose by more than the load can draw; not accepted yet.
 };
 
-enum class CounterEvent : std::uint8_t { none, bounce, reset, restored, jump, erratic, swapped };
+enum class CounterEvent : std::uint8_t {
+  none,
+  bounce,
+  reset,
+  restored,
+  jump,
+  erratic,
+  no_total,
+  swapped
+};
 
 /// Everything that must survive a restart; a plain value.
 struct CounterState {
@@ -50,6 +58,7 @@ struct CounterState {
   std::optional<OldBaseline> previous;  ///< O: the baseline before the last rebase.
   std::optional<Pending> pending;       ///< P: samples that contradict B.
   std::vector<Instant> restarts;        ///< Times when P was restarted within the last hour.
+  std::optional<FallRun> falls;         ///< Since the register began to go back again and again.
 };
 
 /// The energy that one sample decides.
@@ -79,6 +88,9 @@ struct CounterStep {
 /// since then may return after any time. One that counts may return within 7 days, and only
 /// over a difference that its load cannot have drawn, because counting up through the old value
 /// is not a return.
+///
+/// A register that goes back again and again without getting on is no total (`watch_falls`): what
+/// was booked since its first fall is withdrawn, and missing, until it gets on.
 [[nodiscard]] CounterStep advance(CounterState state, const RegisterSample& sample,
                                   const CounterSettings& settings);
 

@@ -47,6 +47,7 @@ Severity severity_of(CounterEvent event) {
     case CounterEvent::jump:
     case CounterEvent::swapped:
     case CounterEvent::erratic:
+    case CounterEvent::no_total:
       return Severity::warning;
   }
   assert(false && "every event has a severity");
@@ -71,6 +72,8 @@ std::string_view kind_of(CounterEvent event) {
       return "counter_jump";
     case CounterEvent::erratic:
       return "counter_erratic";
+    case CounterEvent::no_total:
+      return "counter_no_total";
     case CounterEvent::swapped:
       return "meter_swapped";
   }
@@ -344,6 +347,13 @@ StoreEvent MeterTrack::event_of(CounterEvent event, const RegisterSample& sample
             "{:.1f} kWh; check the wiring, the register map, or whether rated_kW = "
             "{:.0f} is too low",
             sample.value_kWh, state_.settings.rated_kW);
+      case CounterEvent::no_total:
+        return fmt::format(
+            "the register has gone back {} times since {}, last to {:.4g} kWh, without getting on, "
+            "so it is no total (some start again whenever they are read); its intervals since then "
+            "are missing. Name the register of the total in its map",
+            state_.counter.falls->falls, metering::to_string(state_.counter.falls->before.time),
+            sample.value_kWh);
     }
     return "";
   };
