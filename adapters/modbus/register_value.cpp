@@ -152,14 +152,39 @@ std::uint64_t raw_bits(std::span<const std::uint16_t> words, WordOrder order) {
 tl::expected<DecodedValue, ValueFault> decode(std::span<const std::uint16_t> words,
                                               const ValueFormat& format) {
   assert(words.size() == static_cast<std::size_t>(word_count(format.type)));
-  std::uint64_t bits = raw_bits(words, format.order);
+  const std::uint64_t sent = raw_bits(words, format.order);
+  std::uint64_t bits = sent;
   // The sentinel is what the device sends, so it is compared before the mask is applied.
   if (format.absent == bits) return tl::unexpected(ValueFault::absent);
   if (format.mask) bits &= *format.mask;
   const auto raw = TRY(interpret(bits, format.type));
   const double value = raw.value * format.scale + format.offset;
   if (!std::isfinite(value)) return tl::unexpected(ValueFault::not_finite);
-  return DecodedValue{value, raw.step * std::abs(format.scale)};
+  return DecodedValue{value, raw.step * std::abs(format.scale), sent};
+}
+
+bool is_usual_absent(std::uint64_t bits, RegisterType type) {
+  const int width = 16 * word_count(type);
+  const std::uint64_t ones = ~std::uint64_t{0} >> (64 - width);
+  const std::uint64_t sign = ones ^ (ones >> 1);
+  switch (type) {
+    case RegisterType::u16:
+    case RegisterType::i16:
+    case RegisterType::u32:
+    case RegisterType::i32:
+    case RegisterType::u64:
+    case RegisterType::i64:
+      return bits == ones || bits == sign || bits == (ones ^ sign);
+    case RegisterType::f32:
+      return (bits & ~sign) == std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max());
+    case RegisterType::f64:
+      return (bits & ~sign) == std::bit_cast<std::uint64_t>(std::numeric_limits<double>::max());
+    case RegisterType::bcd16:
+    case RegisterType::bcd32:
+      return false;  // all ones are no digits
+  }
+  assert(false && "every type is known");
+  return false;
 }
 
 }  // namespace recald::modbus

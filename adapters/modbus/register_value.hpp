@@ -66,7 +66,13 @@ struct DecodedValue {
   /// The step from this raw value to the next one that the type can hold, scaled: 0.01 kWh for an
   /// integer in units of 0.01 kWh, 0.0625 kWh for a float32 near a million.
   double resolution;
+  std::uint64_t bits = 0;  ///< As read: `raw_bits`.
 };
+
+/// Whether devices usually send these bits where they have no value: all ones, or the largest or
+/// smallest number of a signed type of that width (SunSpec and most others do); of a float the
+/// largest finite number, since a NaN is no value anyway. A counter may really pass them.
+[[nodiscard]] bool is_usual_absent(std::uint64_t bits, RegisterType type);
 
 /// @pre words.size() == word_count(format.type).
 [[nodiscard]] tl::expected<DecodedValue, ValueFault> decode(std::span<const std::uint16_t> words,

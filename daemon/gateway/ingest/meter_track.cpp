@@ -86,12 +86,16 @@ MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
                        const std::optional<RegisterState>& restored)
     : meter_(std::move(meter)),
       usual_(std::move(calendar), meter_.booking.interval),
-      refusals_(meter_.id) {
+      refusals_(meter_.id),
+      absent_(meter_.id, meter_.booking.sample_gap_max) {
   meter_.map.fields = metered_fields(meter_.map);  // the others are never read
   if (restored) state_ = *restored;
   state_.field = meter_.map.energy.empty() ? "power" : "energy";
   // Use the current settings of the site file; the stored state was reached under the old ones.
   state_.settings = meter_.counter;
+  if (meter_.map.energy.size() == 1 && state_.counter.phase == metering::CounterPhase::run) {
+    absent_.remember(meter_.map.energy.front(), state_.counter.baseline);
+  }
   if (!meter_.map.energy.empty() && meter_.map.power) {
     watch_.emplace(meter_.number, meter_.id, power_rules(meter_.booking));
   }
@@ -137,13 +141,14 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   live_.read_at = at;
   for (const modbus::FieldValue& found : decode_read(meter_.map.fields, read, *result)) {
     const RegisterField& field = meter_.map.fields[found.field];
-    if (found.value) {
-      latest_[field.name] = {found.value->value, found.value->resolution, found.power_of_ten, poll};
+    if (const auto value = believed_value(found, at)) {
+      latest_[field.name] = {value->value, value->resolution, found.power_of_ten, poll};
     } else {
       latest_.erase(field.name);
-      note_fault(field, found.value.error());
+      note_fault(field, value.error());
     }
   }
+  if (auto event = absent_.take_event()) batch.events.push_back(std::move(*event));
   take_identity(batch, poll, at);
   update_power();
   const auto power_kW = new_power_kW(read);
@@ -157,6 +162,18 @@ StoreBatch MeterTrack::take(const modbus::PlannedRead& read, const modbus::ReadR
   // Commit intervals together with the state that they were computed from.
   if (!batch.empty() && batch.registers.empty()) batch.registers.push_back({meter_.number, state_});
   return batch;
+}
+
+tl::expected<modbus::DecodedValue, modbus::ValueFault> MeterTrack::believed_value(
+    const modbus::FieldValue& found, Instant at) {
+  const RegisterField& field = meter_.map.fields[found.field];
+  const bool counts = std::ranges::find(meter_.map.energy, field.name) != meter_.map.energy.end();
+  if (!found.value || !counts) return found.value;
+  const double factor = unit_factor(field) * meter_.multiplier;
+  if (absent_.believes(field, *found.value, {at, found.value->value * factor}, state_.settings)) {
+    return found.value;
+  }
+  return tl::unexpected(modbus::ValueFault::absent);
 }
 
 StoreBatch MeterTrack::take_kept(const RegisterSample& sample) {

@@ -13,6 +13,7 @@
 #include "adapters/modbus/register_map.hpp"
 #include "adapters/ports/store.hpp"
 #include "core/metering/months/usual_day.hpp"
+#include "daemon/gateway/ingest/absent_watch.hpp"
 #include "daemon/gateway/ingest/power_watch.hpp"
 #include "daemon/gateway/ingest/refusal_watch.hpp"
 
@@ -75,6 +76,9 @@ class MeterTrack {
     std::chrono::sys_time<std::chrono::milliseconds> poll;
   };
 
+  /// The value of a field, unless it is a counter's that is not believed.
+  [[nodiscard]] tl::expected<modbus::DecodedValue, modbus::ValueFault> believed_value(
+      const modbus::FieldValue& found, metering::Instant at);
   void note_failure(const modbus::ReadFailure& failure);
   void note_fault(const modbus::RegisterField& field, modbus::ValueFault fault);
   void update_power();
@@ -100,6 +104,7 @@ class MeterTrack {
   LiveValues live_;
   std::map<std::string, FieldReading> latest_;
   RefusalWatch refusals_;
+  AbsentWatch absent_;
   std::optional<PowerWatch> watch_;  ///< Set if the meter has both a counter and a power.
   metering::Reason since_sample_ = metering::Reason::none;  ///< Why reads have failed since then.
   bool clock_was_set_ = false;

@@ -111,6 +111,29 @@ TEST(RegisterValue, FloatsLoseResolutionAsTheyGrow) {
   EXPECT_DOUBLE_EQ(resolution(1'000'000.0f), 0.0625);
 }
 
+TEST(RegisterValue, WhatUsuallyMeansNoValueIsKnownInAnyOrder) {
+  for (const auto& [type, bits] : std::vector<std::pair<RegisterType, std::uint64_t>>{
+           {RegisterType::u16, 0xFFFF},
+           {RegisterType::i16, 0x8000},
+           {RegisterType::i16, 0x7FFF},
+           {RegisterType::u32, 0xFFFF'FFFF},
+           {RegisterType::u32, 0x8000'0000},
+           {RegisterType::i32, 0x7FFF'FFFF},
+           {RegisterType::u64, 0xFFFF'FFFF'FFFF'FFFF},
+           {RegisterType::i64, 0x8000'0000'0000'0000},
+           {RegisterType::f32, 0x7F7F'FFFF},
+           {RegisterType::f64, 0xFFEF'FFFF'FFFF'FFFF}}) {
+    EXPECT_TRUE(is_usual_absent(bits, type)) << bits;
+    EXPECT_FALSE(is_usual_absent(bits ^ 0x10, type)) << bits;
+    EXPECT_FALSE(is_usual_absent(0, type));
+  }
+  EXPECT_FALSE(is_usual_absent(0xFFFF, RegisterType::u32));
+  const auto value = decode(std::vector<std::uint16_t>{0xFFFF, 0xFF7F},
+                            {.type = RegisterType::u32, .order = WordOrder::DCBA});
+  ASSERT_TRUE(value);
+  EXPECT_EQ(value->bits, 0x7FFF'FFFFu);
+}
+
 TEST(RegisterValue, SentinelsAreNoValues) {
   const auto fault = [](std::vector<std::uint16_t> words, const ValueFormat& format) {
     const auto value = decode(words, format);

@@ -36,6 +36,8 @@ constexpr std::array kKinds{
     AlertKind{"month_not_closed", "A month could not be closed", false},
     AlertKind{"counter_reset", "A counter was reset", false},
     AlertKind{"counter_stuck", "A counter stands still", false},
+    AlertKind{"counter_no_total", "A counter goes back again and again", false},
+    AlertKind{"counter_absent", "A counter seems to have no value", false},
     AlertKind{"power_differs", "A meter contradicts itself", false},
     AlertKind{"clock_set", "The clock was set", false},
 };
