@@ -82,10 +82,14 @@ class Transition {
                 {.rise_max_kWh = rise_max_kWh(sample_.time - previous.time, settings_),
                  .jitter_kWh = kJitterSteps * settings_.resolution_kWh});
     if (!falls || !falls->is_no_total) return false;
-    const Instant since = was_known ? step_.state.baseline.time : falls->before.time;
-    step_.bookings.push_back(unbooked(since, sample_.time, Reason::reset));
-    step_.bookings.back().supersedes = !was_known;
-    if (!was_known) step_.event = CounterEvent::no_total;
+    if (was_known) {
+      step_.bookings.push_back(unbooked(step_.state.baseline.time, sample_.time, Reason::reset));
+    } else {
+      // What was stored as measured is replaced by a doubt: a missing value replaces nothing.
+      step_.bookings.push_back(
+          {{falls->before.time, sample_.time}, 0.0, Validity::suspect, Reason::reset, true});
+      step_.event = CounterEvent::no_total;
+    }
     step_.state.previous.reset();
     believe(sample_);
     return true;

@@ -65,7 +65,7 @@ struct CounterState {
 struct CounterBooking {
   TimeSpan span;      ///< (begin, end] in register terms.
   double energy_kWh;  ///< NaN: the span is missing.
-  Validity validity;  ///< ok, scaled or missing.
+  Validity validity;  ///< ok, scaled, suspect or missing.
   Reason reasons = Reason::none;
   bool supersedes = false;  ///< Replaces everything booked since `span.begin`.
 };
@@ -90,7 +90,8 @@ struct CounterStep {
 /// is not a return.
 ///
 /// A register that goes back again and again without getting on is no total (`watch_falls`): what
-/// was booked since its first fall is withdrawn, and missing, until it gets on.
+/// was booked since its first fall is superseded, `suspect`, and what follows is missing until it
+/// gets on.
 [[nodiscard]] CounterStep advance(CounterState state, const RegisterSample& sample,
                                   const CounterSettings& settings);
 

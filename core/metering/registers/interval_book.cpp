@@ -66,16 +66,20 @@ Reading reading_of(std::span<const CounterBooking> pieces, std::uint32_t meter,
   double energy_kWh = 0.0;
   bool is_missing = false;
   bool is_estimated = false;
+  bool is_doubted = false;
   for (const CounterBooking& piece : pieces) {
     reading.reasons |= piece.reasons;
     covered += piece.span.length();
     is_missing = is_missing || piece.validity == Validity::missing;
     is_estimated = is_estimated || piece.validity == Validity::scaled;
+    is_doubted = is_doubted || piece.validity == Validity::suspect;
     energy_kWh += piece.energy_kWh;
   }
-  if (is_missing || covered < interval.length()) return reading;
+  // What was forgotten of an interval in doubt makes it no less doubtful.
+  if (is_missing || (covered < interval.length() && !is_doubted)) return reading;
   reading.mean_kW = energy_kWh / in_hours(interval.length());
   reading.validity = is_estimated ? Validity::scaled : Validity::ok;
+  if (is_doubted) reading.validity = Validity::suspect;
   return reading;
 }
 

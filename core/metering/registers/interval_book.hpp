@@ -45,7 +45,7 @@ struct IntervalBook {
 /// is `scaled` if a boundary lies in a hole: the counter gives the sum over the hole, the shape its
 /// distribution. The sum over all intervals and the open rest equals the booked energy up to
 /// rounding, so monthly energy is as good as measured through any silence. An interval is missing
-/// if the counter could not be trusted.
+/// if the counter could not be trusted, and suspect if that shows only afterwards.
 ///
 /// @param step  From `advance` for this book's counter.
 [[nodiscard]] std::vector<BookedInterval> book_intervals(IntervalBook& book, std::uint32_t meter,

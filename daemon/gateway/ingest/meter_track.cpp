@@ -368,7 +368,7 @@ StoreEvent MeterTrack::event_of(CounterEvent event, const RegisterSample& sample
         return fmt::format(
             "the register has gone back {} times since {}, last to {:.4g} kWh, without getting on, "
             "so it is no total (some start again whenever they are read); its intervals since then "
-            "are missing. Name the register of the total in its map",
+            "do not count. Name the register of the total in its map",
             state_.counter.falls->falls, metering::to_string(state_.counter.falls->before.time),
             sample.value_kWh);
     }
