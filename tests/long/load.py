@@ -20,6 +20,7 @@ LINES = int(os.environ.get("LINES", 8))
 UNITS = int(os.environ.get("UNITS", 4))
 REQUESTS_PER_S = float(os.environ.get("REQUESTS", 0))
 REGISTER_READS_PER_S = float(os.environ.get("REGISTER_READS", 0))
+HOSTILE = int(os.environ.get("HOSTILE", 0))
 CALIBRATES = os.environ.get("CALIBRATE") == "1"
 # A boundary a minute, so that ten minutes have ten of them; but years of minutes are many.
 INTERVAL_S = 300 if CALIBRATES else 60
@@ -248,6 +249,57 @@ class ReadingRegisters(threading.Thread):
             self.waits_s.append(time.monotonic() - asked)
 
 
+class Hostile(threading.Thread):
+    """HOSTILE clients that hold what they can get, in turns of some seconds: a refused body that goes on, half a
+    body, a large answer that is not read, pages one after the other. /healthz beside them on connections of its own."""
+
+    KINDS = (b"POST /x HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: text/plain\r\nContent-Length: 1000000\r\n\r\n",
+             b"POST /api/v1/readings HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+             b"Content-Length: 1000\r\n\r\n{",
+             b"GET /charts.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
+             b"GET /meters/b0-u1 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 20)
+    STAYS_S = 9.0
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.port = port
+        self.held = []
+        self.opened = 0
+        self.waits_s = []
+        self.wrong = 0
+        self.goes_on = True
+
+    def open_one(self):
+        client = socket.create_connection(("127.0.0.1", self.port), timeout=2)
+        client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
+        client.sendall(self.KINDS[self.opened % len(self.KINDS)])
+        self.opened += 1
+        return time.monotonic(), client
+
+    def ask_health(self):
+        asked = time.monotonic()
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/healthz", timeout=30) as reply:
+                self.wrong += reply.status != 200
+        except OSError:
+            self.wrong += 1
+        self.waits_s.append(time.monotonic() - asked)
+
+    def run(self):
+        while self.goes_on:
+            gone = [one for one in self.held if time.monotonic() - one[0] > self.STAYS_S]
+            self.held = [one for one in self.held if one not in gone]
+            for _, client in gone:
+                client.close()
+            while len(self.held) < HOSTILE:
+                try:
+                    self.held.append(self.open_one())
+                except OSError:
+                    break
+            self.ask_health()
+            time.sleep(0.2)
+
+
 def print_intervals(store, meters, first, last):
     """Of the slots between two boundaries, how many are stored and how many of them `ok` (0)."""
     db = sqlite3.connect(f"file:{store}?mode=ro", uri=True)
@@ -308,6 +360,9 @@ def main(build, minutes):
         recalibrating = Recalibrating(listening.group(1)) if listening and CALIBRATES else None
         if recalibrating:
             recalibrating.start()
+        hostile = Hostile(int(listening.group(1))) if listening and HOSTILE else None
+        if hostile:
+            hostile.start()
         while time.time() < begin + 60 * minutes:
             time.sleep(5)
             if daemon.poll() is not None:
@@ -318,6 +373,11 @@ def main(build, minutes):
             asking.goes_on = False
             asking.join()
             asking.print_figures(elapsed_s)
+        if hostile:
+            hostile.goes_on = False
+            hostile.join()
+            print_waits(f"/healthz beside {HOSTILE} hostile clients ({hostile.opened} connections), "
+                        f"{hostile.wrong} refused", hostile.waits_s, elapsed_s)
         if registers:
             registers.goes_on = False
             registers.join()

@@ -4,6 +4,6 @@
 # daemon takes, how late it polls and whether a boundary was missed. Argument: the build folder.
 # ENDPOINTS, LINES and UNITS (meters on each) make it smaller; REQUESTS asks the API so many times a
 # second beside it, and REGISTER_READS reads 125 Modbus registers so many times a second; CALIBRATE=1 has
-# it calibrate a building all the while.
+# it calibrate a building all the while; HOSTILE=64 lets so many clients hold connections and answers.
 set -eu
 exec python3 "$(dirname "$0")/load.py" "$1" "${MINUTES:-10}"

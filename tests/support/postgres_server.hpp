@@ -84,6 +84,9 @@ class PostgresServer {
     process_->end(SIGINT);
     process_.reset();
   }
+  /// As a disk that hangs: nothing answers, and the kernel still takes connections. Until thaw().
+  void freeze() const { signal_all(SIGSTOP); }
+  void thaw() const { signal_all(SIGCONT); }
   /// As a power cut would end all of its processes, but for what the operating system has.
   void kill() {
     process_->signal(SIGSTOP);  // or it would start others
@@ -129,6 +132,10 @@ class PostgresServer {
  private:
   inline static const std::string kPrograms = "/usr/lib/postgresql/15/bin";
 
+  void signal_all(int signal) const {
+    process_->signal(signal);  // first: it starts others
+    for (const pid_t one : children(process_->pid())) ::kill(one, signal);
+  }
   static void shell(const std::string& command) {
     const auto end = run_in_shell(command + " 2>&1");
     if (end.status != 0) throw std::runtime_error(command + ": " + end.said);
