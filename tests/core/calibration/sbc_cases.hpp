@@ -129,7 +129,7 @@ inline OwnedSbcCase epc_case(int months, int inputs) {
   Rng rng(13);
   const Eigen::MatrixXd theta = design::latin_hypercube(priors, 60, rng);
   const Eigen::MatrixXd runs =
-      design::run_model(*model, priors, theta, for_each_index_serially).value();
+      design::run_model(*model, priors, theta, for_each_index_serially, {}).value();
   PosteriorData data = sbc_data(2, months, inputs);
   for (int k = 0; k < 2; ++k) {
     const auto block = runs.middleCols(Eigen::Index{k} * months, months);
@@ -169,7 +169,7 @@ inline OwnedSbcCase emulated_epc_case(int months, int inputs, bool data_from_mod
   Rng rng(14);
   const Eigen::MatrixXd theta = design::latin_hypercube(c.sbc.parameters, 200, rng);
   const Eigen::MatrixXd runs =
-      design::run_model(*c.model, c.sbc.parameters, theta, for_each_index_serially).value();
+      design::run_model(*c.model, c.sbc.parameters, theta, for_each_index_serially, {}).value();
   Emulator emulator = emulate(theta, runs, c.model->output_count(), c.model->month_count()).value();
   PosteriorData with_error = c.sbc.data;
   add_emulator_error(emulator.error_sd, months, with_error);

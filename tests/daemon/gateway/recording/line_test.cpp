@@ -59,18 +59,18 @@ std::vector<Line> every_kind() {
           ReopenedMonth{"main", std::chrono::year{2024} / 1},
           Committed{"main", {none, hard}},
           End{"it ended", true},
-          Entry{kAt, false, Start{}},
-          Entry{kAt, true, answered},
-          Entry{kAt, true, failed},
-          Entry{kAt, true, silent},
-          Entry{kAt, true, Push{"steam", {hard}, Correction{"me", "because", "00ff"}}},
-          Entry{kAt, true, Push{"steam", {}, {}}},
-          Entry{kAt, true, Value{{"pump", true, 1.0 / 3.0, Instant{seconds{5}}}}},
-          Entry{kAt, true, Value{{"pump", false, -2.5e-300, {}}}},
-          Entry{kAt, true, Tick::minute},
-          Entry{kAt, true, Tick::hour},
-          Entry{kAt, true, Tick::step},
-          Entry{kAt, true, Reload{}}};
+          Entry{kAt, "no time server is heard", Start{}},
+          Entry{kAt, "", answered},
+          Entry{kAt, "", failed},
+          Entry{kAt, "", silent},
+          Entry{kAt, "", Push{"steam", {hard}, Correction{"me", "because", "00ff"}}},
+          Entry{kAt, "", Push{"steam", {}, {}}},
+          Entry{kAt, "", Value{{"pump", true, 1.0 / 3.0, Instant{seconds{5}}}}},
+          Entry{kAt, "", Value{{"pump", false, -2.5e-300, {}}}},
+          Entry{kAt, "", Tick::minute},
+          Entry{kAt, "", Tick::hour},
+          Entry{kAt, "", Tick::step},
+          Entry{kAt, "", Reload{}}};
 }
 
 TEST(RecordedLine, IsTheSameWhenItIsReadAndWrittenAgain) {
