@@ -21,7 +21,10 @@ struct CloseFile {
 
 }  // namespace
 
-LineReader::LineReader(ByteSource source) : source_{std::move(source)}, buffer_(kBufferBytes) {}
+LineReader::LineReader(ByteSource source, std::size_t line_max)
+    : source_{std::move(source)},
+      line_max_{line_max},
+      buffer_(std::max(kBufferBytes, 2 * line_max)) {}
 
 bool LineReader::refill() {
   if (begin_ > 0) {
@@ -44,7 +47,7 @@ void LineReader::deliver(Line& line, const char* end, bool terminated) {
   if (terminated && end > begin && end[-1] == '\r') --end;
   line = {{begin, static_cast<std::size_t>(end - begin)}, ++number_, terminated, false};
   if (number_ == 1 && line.text.substr(0, 3) == kByteOrderMark) line.text.remove_prefix(3);
-  if (line.text.size() > kLineMax) {
+  if (line.text.size() > line_max_) {
     line.text = {};
     line.too_long = true;
   }
@@ -62,7 +65,7 @@ bool LineReader::next(Line& line) {
       return true;
     }
     searched = end_ - begin_;
-    if (searched > kLineMax + kByteOrderMark.size() + 1) return skip_long_line(line);
+    if (searched > line_max_ + kByteOrderMark.size() + 1) return skip_long_line(line);
     if (!refill()) return last_line(line);
   }
 }

@@ -27,7 +27,8 @@ struct Line {
 /// Accepts LF and CRLF; drops a UTF-8 byte order mark before the first line.
 class LineReader {
  public:
-  explicit LineReader(ByteSource source);
+  /// @param line_max  Bytes of a line.
+  explicit LineReader(ByteSource source, std::size_t line_max = kLineMax);
 
   /// @return false at the end, and when the source fails; then `error` says why.
   bool next(Line& line);
@@ -40,6 +41,7 @@ class LineReader {
   void deliver(Line& line, const char* end, bool terminated);
 
   ByteSource source_;
+  std::size_t line_max_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;

@@ -40,10 +40,7 @@ template <>
 struct Form<JobResult> {
   static Json json_of(const JobResult& result) { return result.document; }
   static JobResult read(StrictReader& reader, const Parsed& json, const char* key) {
-    // The only text whose length is that of its message.
-    if (json.is_string()) return results::read_job_result(json.get<std::string>());
-    reader.refuse(key, "is no text");
-    return {};
+    return results::read_job_result(reader.document(json, key));
   }
 };
 

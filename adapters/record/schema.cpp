@@ -189,7 +189,13 @@ constexpr auto kUpgrades = std::to_array<const char*>({
     // nobody's grants have it; of earlier rows it is not known.
     "ALTER TABLE audit ADD COLUMN role text NOT NULL DEFAULT '';"
     "ALTER TABLE audit ALTER COLUMN role SET DEFAULT session_user;"
-    "ALTER TABLE audit ALTER COLUMN time SET DEFAULT now()",
+    "ALTER TABLE audit ALTER COLUMN time SET DEFAULT now();"
+    // Years were known to 2037 only.
+    "ALTER TABLE interval DETACH PARTITION interval_beyond;"
+    "ALTER TABLE interval_beyond RENAME TO interval_beyond_2037;"
+    "SELECT recald_make_partition('interval_beyond', '2101-01-01', NULL);"
+    "INSERT INTO interval SELECT * FROM interval_beyond_2037;"
+    "DROP TABLE interval_beyond_2037",
 });
 static_assert(kUpgrades.size() + 1 == kSchemaVersion);
 

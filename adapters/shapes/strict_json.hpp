@@ -93,6 +93,12 @@ class StrictReader {
   T member(const Parsed& object, const char* key) {
     return read<T>(at(object, key), key);
   }
+  /// A text of any length: a document in itself.
+  std::string document(const Parsed& json, const char* key) {
+    if (json.is_string()) return json.get<std::string>();
+    refuse(key, "is no text");
+    return {};
+  }
   /// @return null, which hardly any type takes, if it is missing.
   const Parsed& at(const Parsed& object, const char* key) {
     static const Parsed missing;

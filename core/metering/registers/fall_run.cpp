@@ -25,7 +25,9 @@ bool gets_on(const FallRun& run, const FallLimits& limits) {
 bool is_no_total(const FallRun& run, const FallLimits& limits) {
   if (run.falls < kFallsMin || run.last.time - run.before.time < kRunMin) return false;
   const double highest_kWh = std::max(run.before.value_kWh, run.last.value_kWh);
-  if (is_frequent(run) && highest_kWh <= limits.rise_max_kWh) return true;
+  // A new total without a load flickers where it stands.
+  const bool falls_deep = run.deep > 0 || highest_kWh <= limits.jitter_kWh;
+  if (falls_deep && is_frequent(run) && highest_kWh <= limits.rise_max_kWh) return true;
   return run.deep == 0 && -run.cubes_kWh3 > kStandardErrors * std::sqrt(run.sixths_kWh6);
 }
 

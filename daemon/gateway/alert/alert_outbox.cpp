@@ -53,6 +53,7 @@ Result<OutgoingBatch> AlertOutbox::next(int limit) {
   OutgoingBatch batch;
   if (pending.events.empty()) {
     if (refused_.empty() && pending.position) move(*pending.position);
+    refused_.clear();  // no others are left to tell by: they are tried again
     return batch;
   }
   if (waits_for_morning(pending, now)) return batch;

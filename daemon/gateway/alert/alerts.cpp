@@ -70,6 +70,8 @@ Alerts::Alerts(Ports ports, std::shared_ptr<const SiteConfig> site,
 }
 
 void Alerts::set_site(std::shared_ptr<const SiteConfig> site) {
+  // All are told before the first is waited for.
+  for (const auto& forwarder : forwarders_) forwarder->stop();
   forwarders_.clear();
   for (const AlertDestination& destination : site->alerts.destinations) {
     Destination to = destination_of(destination);
@@ -87,13 +89,13 @@ void Alerts::set_site(std::shared_ptr<const SiteConfig> site) {
 }
 
 void Alerts::observe(const StoreEvent& event) {
-  if (event.kind == "store_refuses") memory_.store_refuses = true;
-  if (event.kind == "store_accepts") memory_.store_refuses = false;
   const auto now = ports_.loop.now().monotonic;
   auto& recent = memory_.recent;
   if (!memory_.store_refuses) {
     std::erase_if(recent, [&](const auto& one) { return now - one.at > kGatherAlerts; });
   }
+  if (event.kind == "store_refuses") memory_.store_refuses = true;
+  if (event.kind == "store_accepts") memory_.store_refuses = false;
   recent.push_back({event, now});
   while (recent.size() > kRecentMax) recent.pop_front();
   for (const auto& forwarder : forwarders_) forwarder->poll_within(kGatherAlerts);

@@ -38,6 +38,9 @@ class Forwarder {
   /// Looks at the outbox within this time.
   void poll_within(std::chrono::milliseconds wait) { wakeup_.after(wait); }
 
+  /// Ends what is being sent, soon. Nothing is sent after it.
+  void stop() { stop_.request_stop(); }
+
   /// The other side has shown that it is there: ends the wait after a failure. During an attempt:
   /// if that fails, the next follows at once.
   void try_now();

@@ -106,6 +106,7 @@ void Forwarding::set_site(std::shared_ptr<const SiteConfig> site) {
   site_ = std::move(site);
   if (!is_started_) return;
   state_.reset();
+  for (const auto& forwarder : forwarders_) forwarder->stop();
   forwarders_.clear();
   // The session of a name has one owner. One that was refused may have another password by now.
   if (!is_same_connection || (link_ && !link_->is_connected())) link_.reset();

@@ -297,13 +297,15 @@ Result<Line> read_known(StrictReader& reader, const Parsed& json) {
   }
   if (json.contains("register")) {
     auto meter = reader.member<std::string>(json, "register");
-    auto state = TRY(stores::read_register_text(reader.member<std::string>(json, "state")));
+    auto state =
+        TRY(stores::read_register_text(reader.document(reader.at(json, "state"), "state")));
     return reader.result(Line{KnownRegister{std::move(meter), std::move(state)}});
   }
   if (json.contains("event")) return reader.result(Line{KnownEvent{read_event(reader, json)}});
   if (json.contains("month_of")) {
     auto meter = reader.member<std::string>(json, "month_of");
-    auto month = TRY(record::parse_stored_month(reader.member<std::string>(json, "month")));
+    auto month =
+        TRY(record::parse_stored_month(reader.document(reader.at(json, "month"), "month")));
     return reader.result(Line{KnownMonth{std::move(meter), std::move(month)}});
   }
   return reader.result(Line{ReopenedMonth{reader.member<std::string>(json, "reopened_of"),

@@ -17,6 +17,8 @@ inline constexpr int kFormat = 1;  ///< Raised when an older recald would take l
 /// Of one line. What may be longer is divided: texts and lists of readings.
 inline constexpr std::size_t kTextMax_bytes = 8'000;
 inline constexpr std::size_t kReadingsMax = 400;
+/// Of a whole line. A counter's state has each read of the interval that is open.
+inline constexpr std::size_t kLineMax_bytes = 1'000'000;
 
 /// The first line.
 struct Head {

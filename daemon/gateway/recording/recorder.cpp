@@ -110,6 +110,9 @@ void Recorder::end(const std::string& why) {
 void Recorder::write(const Line& line) {
   if (!is_on_) return;
   const std::string text = to_text(line);
+  if (text.size() > kLineMax_bytes) {
+    return give_up("a line of it would be longer than a replay reads");
+  }
   if (file_.size_bytes() + text.size() > limit_bytes_) {
     const auto why = fmt::format("it has reached its limit of {} MB (--record-max-MB)",
                                  limit_bytes_ / kBytesPerMB);

@@ -298,7 +298,7 @@ class Replayer {
 Result<ReplayedRecording> replay_recording(const csv::ByteSource& source, const std::string& name,
                                            Store& store) {
   Replayer replayer{store};
-  csv::LineReader reader{source};
+  csv::LineReader reader{source, recording::kLineMax_bytes};
   csv::Line text;
   bool is_cut = false;
   const auto at_line = [&](const Error& error) {
@@ -306,7 +306,7 @@ Result<ReplayedRecording> replay_recording(const csv::ByteSource& source, const 
                    fmt::format("{}:{}: {}", name, text.number, printable(error.message)));
   };
   while (reader.next(text)) {
-    if (text.too_long) return at_line({ErrorCode::malformed, "the line is longer than 64 KB"});
+    if (text.too_long) return at_line({ErrorCode::malformed, "the line is longer than a megabyte"});
     is_cut = !text.terminated;
     if (is_cut) break;
     auto line = recording::parse_line(text.text);

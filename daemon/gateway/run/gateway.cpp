@@ -591,7 +591,7 @@ void Gateway::close_months(const Moment& at) {
 /// Closes some months of the last meter in the list; the others follow after whatever else waits
 /// for the loop, because a thousand months take seconds.
 void Gateway::close_months_of(std::vector<std::uint32_t> meters, Instant now) {
-  if (meters.empty()) return;
+  if (meters.empty() || !clock_.is_believed()) return;
   // A reload may have removed it meanwhile.
   const MeterProgress* const meter = find_progress(meters.back());
   const bool has_more = meter != nullptr && close_months_of(*meter, now);

@@ -43,7 +43,10 @@ Recalibration::Recalibration(Loop& loop, const SiteConfig& site, metering::Local
 
 void Recalibration::start() {
   if (!schedule_.times) return;
-  if (const auto next = schedule_.times->next(loop_.now().instant(), calendar_)) wait_for(*next);
+  if (const auto next = schedule_.times->next(loop_.now().instant(), calendar_)) {
+    return wait_for(*next);
+  }
+  loop_.after(kLookAgain, alive_.guard([this] { start(); }));  // the clock may be decades ahead
 }
 
 Result<void> Recalibration::catch_up(Store& store, const SiteConfig& site) {
@@ -63,7 +66,11 @@ void Recalibration::wait_for(metering::Instant next) {
     return ask_("schedule");
   }
   loop_.after(std::min(std::chrono::ceil<std::chrono::milliseconds>(left), kLookAgain),
-              alive_.guard([this, next] { wait_for(next); }));
+              alive_.guard([this, next] {
+                // Of a clock that was set back the next time comes sooner.
+                const auto anew = schedule_.times->next(loop_.now().instant(), calendar_);
+                wait_for(std::min(next, anew.value_or(next)));
+              }));
 }
 
 void Recalibration::month_closed(const std::string& meter) {

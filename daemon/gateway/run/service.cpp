@@ -218,8 +218,10 @@ class Service {
     facts_.reset();
     registers_.reset();
     jobs_.interrupt();
+    const std::string why = found_ ? "the store could be opened" : "the daemon ended";
+    if (recorder_ && found_) note_recording_ended(why);
     const auto flushed = gateway_->flush();
-    if (recorder_) recorder_->end(found_ ? "the store could be opened" : "the daemon ended");
+    if (recorder_) recorder_->end(why);
     spdlog::info("event=ended");
     return flushed;
   }
@@ -243,13 +245,15 @@ class Service {
     recorder_ = TRY(recording::Recorder::create(
         options_.record, options_.record_max_bytes, [this](const std::string& why) {
           // Posted, because the gateway is in the middle of what was to be recorded.
-          loop_.post([this, why] {
-            gateway_->note({loop_.now().instant(), Severity::warning, "recording_ended", "",
-                            fmt::format("the recording '{}' has ended: {}; recald goes on without",
-                                        options_.record.string(), why)});
-          });
+          loop_.post([this, why] { note_recording_ended(why); });
         }));
     return {};
+  }
+
+  void note_recording_ended(const std::string& why) {
+    gateway_->note({loop_.now().instant(), Severity::warning, "recording_ended", "",
+                    fmt::format("the recording '{}' has ended: {}; recald goes on without",
+                                options_.record.string(), why)});
   }
 
   void begin_recording() {
@@ -514,9 +518,10 @@ Result<void> run_service(OpenSite site, const ServiceOptions& options) {
   if (!store) return tl::unexpected(store.error());
   signals.hold_ends();
   Alerts::Notified notified;
-  for (std::unique_ptr<Store> memory;;) {
-    auto service = std::make_unique<Service>(std::move(site), options, std::move(*store), opener,
-                                             signals, std::exchange(notified, {}));
+  ServiceOptions now_options = options;
+  for (std::unique_ptr<Store> memory;; now_options.record.clear()) {  // one service is recorded
+    auto service = std::make_unique<Service>(std::move(site), now_options, std::move(*store),
+                                             opener, signals, std::exchange(notified, {}));
     if (auto opened = service->open(memory.get()); !opened) {
       if (!memory) return opened;
       // The readings in memory exist nowhere else: continue with them, and try again later.

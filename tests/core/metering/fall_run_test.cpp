@@ -167,6 +167,26 @@ TEST(FallRun, ANewTotalMayJitter) {
   }
 }
 
+// Its highest read is below what a load could have counted since the last, and nothing counts yet.
+TEST(FallRun, ANewTotalWithoutALoadMayJitterToo) {
+  for (int seed = 0; seed < kCases; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    Polled meter{random};
+    const double r_kWh = meter.settings.resolution_kWh;
+    const double begin_kWh =
+        std::max(5 * r_kWh, between(random, 0.1, 0.9) * meter.one_period_kWh());
+    const double load_kW = between(random, 0.01, 0.3) * meter.settings.rated_kW;
+    while (meter.now < kStart + hours{24 * 4}) {
+      const auto loaded = std::max(meter.now - kStart - hours{24}, seconds{0});
+      const double kWh = begin_kWh + load_kW * in_hours(std::chrono::floor<seconds>(loaded));
+      meter.read(meter.steps(kWh) + r_kWh * noise_steps(random, whole(random, 1, 2)));
+    }
+    EXPECT_EQ(meter.verdicts, 0);
+    EXPECT_EQ(meter.count(Validity::missing), 0);
+  }
+}
+
 // Nights of a solar plant, days without a load, a reset each day, an exchange each day.
 TEST(FallRun, StandingAndResetsAreNoFallsAgainAndAgain) {
   for (int seed = 0; seed < kCases; ++seed) {

@@ -39,6 +39,12 @@ std::vector<Line> every_kind() {
       tl::unexpected(modbus::ReadFailure{modbus::ReadFault::exception, 11, "no answer: \xff"});
   Read silent = answered;
   silent.result = tl::unexpected(modbus::ReadFailure{modbus::ReadFault::timeout});
+  RegisterState many_pieces{.field = "energy"};  // of an hour that is read every few seconds
+  for (int i = 0; i < 900; ++i) {
+    const Instant at{seconds{1'709'078'400 + 4 * i}};
+    many_pieces.book.pieces.push_back(
+        {.span = {at, at + seconds{4}}, .energy_kWh = 0.1 * i, .validity = metering::Validity::ok});
+  }
   metering::MonthlyFigure figure{};
   figure.month = std::chrono::year{2024} / 2;
   return {Head{kFormat, "0.9.0", "2025b"},
@@ -54,6 +60,7 @@ std::vector<Line> every_kind() {
                       .count = 3,
                       .last = Instant{seconds{6}}}},
           KnownRegister{"main", {.field = "energy"}},
+          KnownRegister{"main", many_pieces},
           Readings{"main", {hard, none}},
           KnownMonth{"main", {figure, Instant{seconds{8}}, "2025b"}},
           ReopenedMonth{"main", std::chrono::year{2024} / 1},

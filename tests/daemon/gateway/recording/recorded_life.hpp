@@ -162,6 +162,11 @@ class RecordedLife : private RigInMemory {
     device.energy_kWh = [counted = device.energy_kWh, reset = after(kLife)](milliseconds t) {
       return t < reset ? counted(t) : counted(t) - counted(reset);
     };
+    if (rng_.below(4) != 0) return;
+    // From some day on it starts again with each third read.
+    device.energy_kWh = [counted = device.energy_kWh, fails = after(kLife)](milliseconds t) {
+      return t < fails ? counted(t) : static_cast<double>(t / std::chrono::minutes{1} % 3);
+    };
   }
 
   /// What comes from others during the recording.

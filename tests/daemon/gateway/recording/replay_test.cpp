@@ -130,8 +130,8 @@ TEST(Replay, NamesTheLineThatIsWrong) {
   const std::size_t second = text.find('\n') + 1;
   EXPECT_THAT(refusal_of(std::string{text}.insert(second, "\x1b[2J nonsense\n")),
               HasSubstr("recording.jsonl:2: it is no JSON object"));
-  EXPECT_THAT(refusal_of(std::string{text}.insert(second, std::string(70'000, '[') + "\n")),
-              HasSubstr("recording.jsonl:2: the line is longer than 64 KB"));
+  EXPECT_THAT(refusal_of(std::string{text}.insert(second, std::string(1'100'000, '[') + "\n")),
+              HasSubstr("recording.jsonl:2: the line is longer than a megabyte"));
   EXPECT_THAT(refusal_of(text + text), HasSubstr("another recording begins here"));
   EXPECT_THAT(refusal_of("{\"end\":\"\",\"whole\":true}\n"),
               HasSubstr("begins with \"recald_recording\""));
