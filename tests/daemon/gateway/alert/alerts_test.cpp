@@ -320,6 +320,20 @@ TEST_F(AlertsTest, AStoreThatRefusesIsToldFromMemoryAndOnce) {
   EXPECT_THAT(mails_, SizeIs(2));
 }
 
+// A destination that came later, or a kind that was chosen later, has not been told of it.
+TEST_F(AlertsTest, WhatHappenedLongBeforeADiskFillsIsNoNews) {
+  begin(kMail);
+  happens("meter_silent");
+  loop_.run_for(hours{2});
+  alerts_->set_site(std::make_shared<const SiteConfig>(site_with(std::string{kMail} + kHook)));
+  loop_.run_for(minutes{5});
+  failing_.refuses = true;
+  happens("store_refuses", Severity::error, "");
+  loop_.run_for(minutes{5});
+  ASSERT_THAT(hooks_, SizeIs(1));
+  EXPECT_THAT(hooks_[0].text, Not(HasSubstr("silent")));
+}
+
 // More than one message holds, and the store has none of it.
 TEST_F(AlertsTest, AThousandEventsOfAFullDiskAreToldOnce) {
   begin(kMail);

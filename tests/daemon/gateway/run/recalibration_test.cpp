@@ -129,6 +129,20 @@ TEST_F(RecalibrationTest, TheScheduleFollowsTheLocalClock) {
                                   "schedule 2026-03-30T01:30:00Z"));
 }
 
+TEST_F(RecalibrationTest, AClockThatWasDecadesAheadMissesNoTime) {
+  for (const auto ahead : {std::chrono::years{54}, std::chrono::years{80}}) {
+    SCOPED_TRACE(ahead.count());
+    asked_.clear();
+    loop_.set_wall_clock(ahead);
+    begin("0 3 * * *");
+    loop_.run_for(minutes{10});
+    asked_.clear();
+    loop_.set_wall_clock(-ahead);
+    loop_.run_for(hours{24});
+    EXPECT_EQ(asked_.size(), 1U);
+  }
+}
+
 TEST_F(RecalibrationTest, AClockThatIsSetMovesTheNextTime) {
   begin("0 12 * * *");
   loop_.run_for(hours{1});
