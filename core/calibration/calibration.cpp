@@ -6,6 +6,7 @@
 #include "core/calibration/posterior/emulator.hpp"
 #include "core/calibration/posterior/posterior.hpp"
 #include "core/calibration/posterior_findings.hpp"
+#include "core/calibration/samplers/chain_loop.hpp"
 #include "core/design/latin_hypercube.hpp"
 #include "core/design/model_runs.hpp"
 #include "core/random/streams.hpp"
@@ -45,18 +46,34 @@ void add_posterior_findings(const CalibrationProblem& problem, Calibration& c) {
 }
 
 /// Checks the posterior beyond its draws. None of these is required: whatever fails is left out.
-void check_model(const Posterior& prototype, const Eigen::MatrixXd& points,
-                 const CalibrationProblem& problem, const RunContext& context, Calibration& c) {
+/// @return cancelled.
+Result<void> check_model(const Posterior& prototype, const Eigen::MatrixXd& points,
+                         const CalibrationProblem& problem, const RunContext& context,
+                         Calibration& c) {
   Posterior posterior(prototype);
   Rng rng(context.seed, streams::kBridge.first);
-  if (auto evidence = bridge_log_evidence(posterior, points, rng)) c.evidence = *evidence;
+  // A model that is slow is evaluated some thousand times more.
+  const std::function<bool()> proceed = [&, observed_s = worked_s()]() mutable {
+    if (worked_s() - observed_s < kObserveWithin_s) return true;
+    observed_s = worked_s();
+    return !context.observer || context.observer({Progress::Stage::predicting, 0, 0, 1});
+  };
+  const auto is_cancelled = [](const auto& result) {
+    return !result && result.error().code == ErrorCode::cancelled;
+  };
+  const auto evidence = bridge_log_evidence(posterior, points, rng, proceed);
+  if (is_cancelled(evidence)) return tl::unexpected(evidence.error());
+  if (evidence) c.evidence = *evidence;
   append(c.findings, evidence_findings(c.sampling, c.evidence));
   for (const int months : {1, 3}) {
-    if (auto score = leave_out_score(posterior, c.chains, months)) c.leave_out.push_back(*score);
+    const auto score = leave_out_score(posterior, c.chains, months, kLeaveOutDraws, proceed);
+    if (is_cancelled(score)) return tl::unexpected(score.error());
+    if (score) c.leave_out.push_back(*score);
   }
   c.weak_directions = find_weak_directions(posterior, c.chains, c.posterior_mean);
   append(c.findings, weak_direction_findings(c.weak_directions, problem.parameters));
   append(c.findings, discrepancy_findings(problem.outputs, c.normalisation, c.chains));
+  return {};
 }
 
 /// The emulator that is sampled instead of a model without derivatives; absent: the model
@@ -135,7 +152,7 @@ Result<Calibration> calibrate_on_design(const MonthlyModel& prototype,
   result.thinned = thin(result.chains, options.thinned_draws);
   add_posterior_findings(problem, result);
   append(result.findings, sampled.findings);
-  check_model(posterior, sampled.points, problem, context, result);
+  TRY(check_model(posterior, sampled.points, problem, context, result));
   if (options.predictive) {
     result.predictions = TRY(predict_points(posterior, result.chains, context));
   }

@@ -23,7 +23,7 @@
 #include "adapters/record/record_batch.hpp"
 #include "adapters/stores/open.hpp"
 #include "core/random/rng.hpp"
-#include "daemon/gateway/forward/store_history.hpp"
+#include "daemon/gateway/forward/outbox/store_history.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace {

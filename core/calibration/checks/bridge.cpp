@@ -64,9 +64,11 @@ double log_standard_normal(const Eigen::VectorXd& u) {
 
 /// log q - log g at n points; `draw_point` gives the i-th in whitened coordinates.
 template <class DrawPoint>
-Result<Eigen::VectorXd> log_ratios(WarpedTarget& warped, Eigen::Index n, DrawPoint draw_point) {
+Result<Eigen::VectorXd> log_ratios(WarpedTarget& warped, Eigen::Index n,
+                                   const std::function<bool()>& proceed, DrawPoint draw_point) {
   Eigen::VectorXd ratios(n);
   for (Eigen::Index i = 0; i < n; ++i) {
+    if (proceed && !proceed()) return failure(ErrorCode::cancelled, "cancelled while bridging");
     const Eigen::VectorXd u = draw_point(i);
     const auto value = TRY(warped.log_density(u));
     ratios(i) = value - log_standard_normal(u);
@@ -139,7 +141,8 @@ class FixedPoint {
 
 }  // namespace
 
-Result<BridgeEstimate> bridge_log_evidence(Target& target, const Eigen::MatrixXd& draws, Rng& rng) {
+Result<BridgeEstimate> bridge_log_evidence(Target& target, const Eigen::MatrixXd& draws, Rng& rng,
+                                           const std::function<bool()>& proceed) {
   const Eigen::Index d = target.dimension();
   if (draws.cols() != d || draws.rows() < 4 * (d + 2)) {
     return failure(ErrorCode::not_enough_data,
@@ -151,9 +154,10 @@ Result<BridgeEstimate> bridge_log_evidence(Target& target, const Eigen::MatrixXd
   auto warped = TRY(WarpedTarget::fit(target, draws.topRows(fitted)));
   const Eigen::Index n = draws.rows() - fitted;
   // The symmetrised density is the same at mu + L u and mu - L u, so a draw needs no random sign.
-  const auto posterior = TRY(log_ratios(
-      warped, n, [&](Eigen::Index i) { return warped.whiten(draws.row(fitted + i).transpose()); }));
-  const auto proposal = TRY(log_ratios(warped, n, [&](Eigen::Index) {
+  const auto posterior = TRY(log_ratios(warped, n, proceed, [&](Eigen::Index i) {
+    return warped.whiten(draws.row(fitted + i).transpose());
+  }));
+  const auto proposal = TRY(log_ratios(warped, n, proceed, [&](Eigen::Index) {
     Eigen::VectorXd u(d);
     for (double& value : u) value = rng.normal();
     return u;

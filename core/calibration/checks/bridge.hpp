@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
 #include "core/calibration/samplers/sampler.hpp"
 
@@ -33,10 +34,12 @@ struct BridgeEstimate {
 ///               fitted to the first half and evaluated on the second, so on other chains.
 /// @return the estimate; not_enough_data for n < 4 (d + 2), not_positive_definite for draws without
 ///         spread, not_finite if the fixed point is not found, or an error of the target.
+/// @param proceed  Called with each evaluation; false gives `cancelled`.
 /// @note   2 n evaluations of the density.
 /// @see    Meng, Wong (1996), Statistica Sinica 6; Meng, Schilling (2002), J. Comput. Graph. Stat.
 ///         11(3) for the warp; Frühwirth-Schnatter (2004), Econom. J. 7(1) for the error.
 [[nodiscard]] Result<BridgeEstimate> bridge_log_evidence(Target& target,
-                                                         const Eigen::MatrixXd& draws, Rng& rng);
+                                                         const Eigen::MatrixXd& draws, Rng& rng,
+                                                         const std::function<bool()>& proceed = {});
 
 }  // namespace recald::calibration

@@ -35,7 +35,8 @@ PointBlocks blocks_of_months(const std::vector<PointIndex>& points, int months) 
 
 Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
                                          const std::vector<ChainDraws>& chains, int count,
-                                         const PointBlocks& blocks) {
+                                         const PointBlocks& blocks,
+                                         const std::function<bool()>& proceed) {
   if (blocks.empty()) {
     return failure(ErrorCode::not_enough_data, "there is no measured month to leave out");
   }
@@ -43,6 +44,7 @@ Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
   PointsAtDraw points(posterior.data(), posterior.prior());
   Eigen::MatrixXd scores(thinned.theta.rows(), static_cast<Eigen::Index>(blocks.size()));
   for (Eigen::Index d = 0; d < scores.rows(); ++d) {
+    if (proceed && !proceed()) return failure(ErrorCode::cancelled, "cancelled while leaving out");
     const auto draw = static_cast<std::size_t>(d);
     const ChainDraws& chain = chains[static_cast<std::size_t>(thinned.chain[draw])];
     const Eigen::VectorXd theta = thinned.theta.row(d);
@@ -57,9 +59,9 @@ Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
 }
 
 Result<LeaveOutScore> leave_out_score(Posterior& posterior, const std::vector<ChainDraws>& chains,
-                                      int months, int count) {
+                                      int months, int count, const std::function<bool()>& proceed) {
   const PointBlocks blocks = blocks_of_months(posterior.data().points, months);
-  const auto scores = TRY(block_log_scores(posterior, chains, count, blocks));
+  const auto scores = TRY(block_log_scores(posterior, chains, count, blocks, proceed));
   const auto loo = TRY(psis_loo(scores));
   LeaveOutScore result{months,
                        static_cast<int>(blocks.size()),

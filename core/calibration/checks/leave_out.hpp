@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,17 @@ using PointBlocks = std::vector<std::vector<Eigen::Index>>;
 ///
 /// @param posterior  The one that the chains are of.
 /// @param count      Draws taken, pooled over chains.
+/// @param proceed    Called with each draw; false gives `cancelled`.
 /// @return not_enough_data without a block, not_positive_definite when a draw's covariance has no
 ///         factor, an error of the model.
 /// @see Bürkner, Gabry, Vehtari (2021), Comput. Stat. 36, eq. (15), for single points.
 [[nodiscard]] Result<Eigen::MatrixXd> block_log_scores(Posterior& posterior,
                                                        const std::vector<ChainDraws>& chains,
-                                                       int count, const PointBlocks& blocks);
+                                                       int count, const PointBlocks& blocks,
+                                                       const std::function<bool()>& proceed = {});
+
+/// Draws that are enough for it.
+inline constexpr int kLeaveOutDraws = 1000;
 
 /// Expected log density of left-out blocks, by importance sampling from the whole posterior.
 struct LeaveOutScore {
@@ -44,8 +50,10 @@ struct LeaveOutScore {
 
 /// PSIS over blocks of `months` consecutive months. Single months borrow from their neighbours,
 /// because discrepancies of adjacent months are correlated; longer blocks test prediction.
+/// @param proceed  Called with each draw; false gives `cancelled`.
 [[nodiscard]] Result<LeaveOutScore> leave_out_score(Posterior& posterior,
                                                     const std::vector<ChainDraws>& chains,
-                                                    int months, int count = 1000);
+                                                    int months, int count = kLeaveOutDraws,
+                                                    const std::function<bool()>& proceed = {});
 
 }  // namespace recald::calibration

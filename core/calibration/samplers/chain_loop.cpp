@@ -2,12 +2,14 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <ctime>
 #include <string>
 
 namespace recald::calibration {
 namespace {
 
 constexpr int kStartsTried = 100;
+constexpr int kLookEach = 8;
 
 Result<StartingPoint> start_at(Target& target, const Eigen::VectorXd& position) {
   if (position.size() != target.dimension()) {
@@ -68,12 +70,19 @@ Result<Eigen::LLT<Eigen::MatrixXd>> factor_of_state(const ChainState& state,
   return factor;
 }
 
+double worked_s() {
+  std::timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 Result<Chain> run_chain(ChainKernel& kernel, const SamplerOptions& options, int observe_every,
                         const SamplerObserver& observer) {
   const int kept = options.iterations - options.burn_in;
   Chain chain;
   chain.draws.resize(kept, kernel.position().size());
   chain.log_density.resize(kept);
+  double observed_s = worked_s();
   for (int done = 1; done <= options.iterations; ++done) {
     TRY(kernel.step());
     if (done <= options.burn_in) {
@@ -83,8 +92,10 @@ Result<Chain> run_chain(ChainKernel& kernel, const SamplerOptions& options, int 
       chain.draws.row(done - options.burn_in - 1) = kernel.position();
       chain.log_density(done - options.burn_in - 1) = kernel.log_density();
     }
-    const bool due = done % observe_every == 0 || done == options.iterations;
-    if (due && observer && !observer(done, options.iterations)) {
+    const bool is_late = done % kLookEach == 0 && worked_s() - observed_s > kObserveWithin_s;
+    if (!is_late && done % observe_every != 0 && done != options.iterations) continue;
+    observed_s = worked_s();
+    if (observer && !observer(done, options.iterations)) {
       return failure(ErrorCode::cancelled,
                      "cancelled after " + std::to_string(done) + " iterations of a chain");
     }

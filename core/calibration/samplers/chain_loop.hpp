@@ -29,9 +29,15 @@ class ChainKernel {
   [[nodiscard]] virtual ChainState state() const = 0;
 };
 
+/// Seconds of the processor that this thread has had: a machine that is busy with others changes
+/// nothing.
+[[nodiscard]] double worked_s();
+/// A slow model is asked so often whether it should go on: a stop is to be heard within a second.
+inline constexpr double kObserveWithin_s = 0.25;
+
 /// Runs all iterations of one chain.
-/// @param observe_every  Iterations between calls of the observer, which is also
-///                       called after the last.
+/// @param observe_every  Iterations between calls of the observer at most, which is also called
+///                       after the last, and sooner where they take longer than a moment.
 /// @return the chain, an error of the kernel, or cancelled.
 /// @pre `check_options(options)` holds.
 [[nodiscard]] Result<Chain> run_chain(ChainKernel& kernel, const SamplerOptions& options,

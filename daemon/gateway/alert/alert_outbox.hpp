@@ -15,7 +15,7 @@
 
 #include "adapters/ports/event_store.hpp"
 #include "core/metering/civil_time.hpp"
-#include "daemon/gateway/forward/outbox.hpp"
+#include "daemon/gateway/forward/outbox/outbox.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {

@@ -13,7 +13,7 @@
 #include "adapters/ports/loop.hpp"
 #include "adapters/ports/wakeup.hpp"
 #include "adapters/ports/worker.hpp"
-#include "daemon/gateway/forward/outbox.hpp"
+#include "daemon/gateway/forward/outbox/outbox.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
 
 namespace recald::daemon {

@@ -8,9 +8,9 @@
 #include "adapters/http/url.hpp"
 #include "adapters/system/worker_thread.hpp"
 #include "daemon/gateway/forward/mqtt_messages.hpp"
+#include "daemon/gateway/forward/outbox/store_outbox.hpp"
 #include "daemon/gateway/forward/record_sink.hpp"
 #include "daemon/gateway/forward/sinks.hpp"
-#include "daemon/gateway/forward/store_outbox.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
 
 namespace recald::daemon {

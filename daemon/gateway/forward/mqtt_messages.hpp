@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adapters/mqtt/message.hpp"
-#include "daemon/gateway/forward/sink.hpp"
+#include "daemon/gateway/forward/outbox/sink.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {

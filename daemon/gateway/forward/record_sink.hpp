@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "daemon/gateway/forward/outbox/sink.hpp"
 #include "daemon/gateway/forward/record_link.hpp"
-#include "daemon/gateway/forward/sink.hpp"
 
 namespace recald::daemon {
 

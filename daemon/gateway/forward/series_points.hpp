@@ -5,7 +5,7 @@
 
 #include "adapters/series/point.hpp"
 #include "core/metering/civil_time.hpp"
-#include "daemon/gateway/forward/sink.hpp"
+#include "daemon/gateway/forward/outbox/sink.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {

@@ -5,7 +5,7 @@
 
 #include "core/metering/civil_time.hpp"
 #include "daemon/gateway/forward/broker_link.hpp"
-#include "daemon/gateway/forward/sink.hpp"
+#include "daemon/gateway/forward/outbox/sink.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {

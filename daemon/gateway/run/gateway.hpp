@@ -23,7 +23,6 @@
 #include "daemon/gateway/feed/live_bus.hpp"
 #include "daemon/gateway/feed/mqtt_feed.hpp"
 #include "daemon/gateway/feed/pushed_feed.hpp"
-#include "daemon/gateway/ingest/clock_watch.hpp"
 #include "daemon/gateway/ingest/committer.hpp"
 #include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/ingest/gateway_status.hpp"
@@ -31,6 +30,7 @@
 #include "daemon/gateway/ingest/meter_watch.hpp"
 #include "daemon/gateway/ingest/month_keeper.hpp"
 #include "daemon/gateway/recording/entry.hpp"
+#include "daemon/gateway/run/clock_watch.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "adapters/sqlite/sqlite_store.hpp"
-#include "daemon/gateway/forward/store_outbox.hpp"
+#include "daemon/gateway/forward/outbox/store_outbox.hpp"
 #include "tests/support/failing_store.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/virtual_loop.hpp"

@@ -78,7 +78,8 @@ class DoubtfulCounters : public ::testing::TestWithParam<int>, protected testing
   std::optional<SiteConfig> site_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Drawn, DoubtfulCounters, ::testing::Range(0, 16));
+INSTANTIATE_TEST_SUITE_P(Drawn, DoubtfulCounters, ::testing::Range(0, 16),
+                         [](const auto& made) { return "seed_" + std::to_string(made.param); });
 
 // A gateway that ends and begins again tells nothing twice and believes nothing in between.
 TEST_P(DoubtfulCounters, ARegisterThatStartsAgainAtEachReadIsToldAndNotBelieved) {

@@ -200,7 +200,10 @@ INSTANTIATE_TEST_SUITE_P(Years, DeadClock,
                          ::testing::Values(Instant{},
                                            std::chrono::sys_days{std::chrono::year{1980} / 1 / 6},
                                            std::chrono::sys_days{std::chrono::year{2000} / 1 / 1},
-                                           std::chrono::sys_days{std::chrono::year{2106} / 2 / 7}));
+                                           std::chrono::sys_days{std::chrono::year{2106} / 2 / 7}),
+                         [](const auto& made) {
+                           return "of_" + metering::to_string(made.param).substr(0, 4);
+                         });
 
 // clock_1970_then_sync: a gateway without a clock battery wakes up in 1970, 2000 or wherever its
 // clock begins. What it reads is kept and stamped when the time is known.

@@ -1,4 +1,4 @@
-#include "daemon/gateway/forward/outbox.hpp"
+#include "daemon/gateway/forward/outbox/outbox.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/gateway/forward/outbox_identity.hpp"
+#include "daemon/gateway/forward/outbox/outbox_identity.hpp"
 
 #include <limits>
 #include <random>

@@ -1,4 +1,4 @@
-#include "daemon/gateway/forward/store_outbox.hpp"
+#include "daemon/gateway/forward/outbox/store_outbox.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "adapters/ports/destination_cursors.hpp"
-#include "daemon/gateway/forward/outbox_identity.hpp"
+#include "daemon/gateway/forward/outbox/outbox_identity.hpp"
 
 namespace recald::daemon {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/gateway/forward/store_history.hpp"
+#include "daemon/gateway/forward/outbox/store_history.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "daemon/gateway/ingest/clock_watch.hpp"
+#include "daemon/gateway/run/clock_watch.hpp"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "adapters/ports/loop.hpp"
-#include "daemon/gateway/forward/sink.hpp"
-#include "daemon/gateway/forward/store_history.hpp"
+#include "daemon/gateway/forward/outbox/sink.hpp"
+#include "daemon/gateway/forward/outbox/store_history.hpp"
 
 namespace recald::daemon {
 

@@ -1,5 +1,5 @@
 /// When a clock is believed, by each kind of evidence, at drawn times.
-#include "daemon/gateway/ingest/clock_watch.hpp"
+#include "daemon/gateway/run/clock_watch.hpp"
 
 #include <gmock/gmock.h>
 

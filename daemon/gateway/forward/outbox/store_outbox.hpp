@@ -8,7 +8,7 @@
 #include <string>
 
 #include "adapters/ports/store.hpp"
-#include "daemon/gateway/forward/outbox.hpp"
+#include "daemon/gateway/forward/outbox/outbox.hpp"
 
 namespace recald::daemon {
 
