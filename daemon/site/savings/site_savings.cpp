@@ -197,9 +197,8 @@ Result<SiteSavings> savings_of(const FinishedCalibration& finished,
                                const calibration::RunContext& context) {
   const SiteCalibration& result = finished.calibration;
   if (!result.with) return failure(ErrorCode::not_enough_data, result.not_calibrated_because);
-  const auto model =
-      TRY(result.design ? make_runs_measures(finished, measures, context)
-                        : make_building_measures(finished, measures, context));
+  const auto model = TRY(result.design ? make_runs_measures(finished, measures, context)
+                                       : make_building_measures(finished, measures, context));
   const std::vector<std::string>& months = result.with->problem.month_names;
   const std::vector<metering::Month> calibrated{result.months.begin(),
                                                 result.months.begin() + std::ssize(months)};
