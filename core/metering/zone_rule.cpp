@@ -99,6 +99,7 @@ class RuleText {
 
 }  // namespace
 
+// The zone library reads the same file for LocalCalendar::open, and keeps its rule to itself.
 std::string zone_rule_of(const std::string& zone_name) {
   std::ifstream in{"/usr/share/zoneinfo/" + zone_name, std::ios::binary};
   const std::string bytes{std::istreambuf_iterator<char>{in}, {}};

@@ -8,6 +8,7 @@
 #include "adapters/system/files/write_file.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/gateway/replay/replay_recording.hpp"
+#include "daemon/gateway/serve/api/shapes.hpp"
 #include "daemon/gateway/upkeep/export_csv.hpp"
 #include "daemon/gateway/upkeep/stored_site.hpp"
 
@@ -19,19 +20,18 @@ using Json = nlohmann::ordered_json;
 
 constexpr TimeSpan kAllTimes{metering::Instant::min(), metering::Instant::max()};
 
-/// As JSON, a line each, in order of time.
+/// As the API has them, a line each, in order of their numbers.
 Result<std::string> events_text(Store& store) {
+  constexpr int kAtATime = 1'000;
   std::string text;
-  TRY(store.for_each_event(metering::Instant::max(), [&](const StoreEvent& event) {
-    const Json json = {{"time", metering::to_string(event.time)},
-                       {"kind", event.kind},
-                       {"subject", event.subject},
-                       {"count", event.count},
-                       {"text", event.text}};
-    text.insert(0, json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
-    return true;
-  }));
-  return text;
+  for (std::int64_t after = 0;;) {
+    const auto events = TRY(store.events_after(after, kAtATime));
+    if (events.empty()) return text;
+    for (const StoreEvent& event : events) {
+      text += event_json(event).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    }
+    after = events.back().number;
+  }
 }
 
 struct ReplayedTexts {
