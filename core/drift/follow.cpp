@@ -36,6 +36,7 @@ struct Ground {
   calibration::PosteriorData data;  ///< Of all months.
   std::vector<LevelOutput> levels;
   calibration::HyperPrior prior;
+  const std::vector<DailyWatches::Output>& days;
   DailyWatches daily;  ///< Before the first month after the learning ones.
   AskHours ask_hours;
 };
@@ -123,6 +124,23 @@ SequentialCalibration sequence_of(const Ground& ground, const Window& window,
           window,       options.sequential, seed};
 }
 
+/// What the alarms of each meter whose days are known have added.
+void add_excesses(const std::vector<DailyWatches::Output>& meters, SiteDrift& drift) {
+  for (const DailyWatches::Output& meter : meters) {
+    std::vector<ExplainedAlarm*> alarms;
+    std::vector<NoticedChange> changes;
+    for (ExplainedAlarm& one : drift.alarms) {
+      if (one.alarm.output != meter.output) continue;
+      const auto month = metering::parse_month(drift.month_name(one.alarm.since));
+      if (!one.alarm.days && !month) continue;
+      alarms.push_back(&one);
+      changes.push_back({one.alarm.days ? one.alarm.days->since : *month / 1, one.alarm.direction});
+    }
+    const auto excesses = excesses_of(meter.days, changes);
+    for (std::size_t i = 0; i < alarms.size(); ++i) alarms[i]->excess = excesses[i];
+  }
+}
+
 /// Makes the record, too.
 Result<FollowedWindow> follow_expanding(const Ground& ground, const FollowOptions& options,
                                         std::uint64_t seed, Pace& pace, SiteDrift& drift) {
@@ -147,6 +165,7 @@ Result<FollowedWindow> follow_expanding(const Ground& ground, const FollowOption
     drift.outputs[k].state = prequential.watch().state(static_cast<int>(k));
     drift.outputs[k].daily = daily.state(static_cast<int>(k));
   }
+  add_excesses(ground.days, drift);
   return window;
 }
 
@@ -256,7 +275,8 @@ Result<SiteDrift> follow(const FollowedSite& followed,
       calibration::make_hyper_prior(calibration::HyperPriorProfile::scaled,
                                     is_calibrated ? normalisation.pooled_variance : 1.0),
       // Days and months share the false alarms.
-      {std::move(beside.days), drift.months, drift.learning_months,
+      beside.days,
+      {beside.days, drift.months, drift.learning_months,
        2.0 * options.watch.months_between_false_alarms},
       std::move(beside.ask_hours)};
   if (!has_figures_after(ground, drift.learning_months)) {

@@ -12,6 +12,7 @@
 #include "core/drift/prequential.hpp"
 #include "core/drift/shift.hpp"
 #include "core/drift/watch/daily_watches.hpp"
+#include "core/drift/watch/excess.hpp"
 #include "core/drift/watch/watch.hpp"
 #include "core/model/model_kind.hpp"
 #include "core/model/parameter.hpp"
@@ -52,6 +53,7 @@ struct ExplainedAlarm {
   std::vector<Cause> causes;  ///< The likeliest first; empty: too little was known before.
   int explained_until = 0;    ///< The last month that the causes were weighed with.
   Consequence consequence = Consequence::none;
+  std::optional<Excess> excess = {};  ///< Of a meter whose days are watched.
 };
 
 /// What is seen in a meter's readings, without any model.

@@ -56,7 +56,7 @@ AlarmCard card_of(const drift::SiteDrift& drift, const drift::ExplainedAlarm& ex
                            alarm.direction > 0 ? "more" : "less",
                            month_text(month_of(drift, alarm.since))),
       .sentence = alarm_sentence(drift, alarm),
-      .cost = alarm_cost_words(drift, alarm),
+      .cost = alarm_cost_words(drift, explained),
       .causes = {},
       .consequence = consequence_of(drift, explained),
       .advice = explained.causes.empty() ? "The record before the change is too short to say why."

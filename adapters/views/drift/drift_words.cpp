@@ -89,6 +89,36 @@ double relative_excess(const drift::SiteDrift& drift, const drift::Alarm& alarm)
   return since.measured / since.expected - 1.0;
 }
 
+/// kWh, or kW of months.
+struct Added {
+  double so_far;
+  std::optional<double> a_year;
+};
+
+/// By the meter's days where they are known, else by its months until the alarm.
+Added added_by(const drift::SiteDrift& drift, const drift::ExplainedAlarm& explained,
+               bool is_peak) {
+  if (const auto& excess = explained.excess) return {excess->so_far_kWh, excess->year_kWh};
+  Added added{excess_so_far(drift, explained.alarm, is_peak), std::nullopt};
+  if (const auto year = expected_year(drift, explained.alarm, is_peak)) {
+    added.a_year = relative_excess(drift, explained.alarm) * *year;
+  }
+  return added;
+}
+
+/// Of what an alarm has cost: "so far", or "from 2022-02-28" where another alarm was the first of
+/// the same change, and " to 2023-03-01" where that has ended.
+std::string period_words(const drift::ExplainedAlarm& explained) {
+  const auto& excess = explained.excess;
+  if (!excess) return "so far";
+  const bool is_first = explained.alarm.days && explained.alarm.days->since == excess->since;
+  if (excess->has_ended) {
+    return fmt::format("from {} to {}", metering::to_string(excess->since),
+                       metering::to_string(excess->until));
+  }
+  return is_first ? "so far" : fmt::format("so far, since {}", metering::to_string(excess->since));
+}
+
 /// Months of an output inside the 90 % interval of their forecasts, and how many there are.
 std::pair<int, int> inside_90(const drift::SiteDrift& drift, std::size_t output) {
   int inside = 0;
@@ -218,8 +248,10 @@ std::string alarm_sentence(const drift::SiteDrift& drift, const drift::Alarm& al
   return sentence;
 }
 
-std::string alarm_cost_words(const drift::SiteDrift& drift, const drift::Alarm& alarm) {
-  const drift::FollowedOutput& output = drift.outputs[static_cast<std::size_t>(alarm.output)];
+std::string alarm_cost_words(const drift::SiteDrift& drift,
+                             const drift::ExplainedAlarm& explained) {
+  const drift::FollowedOutput& output =
+      drift.outputs[static_cast<std::size_t>(explained.alarm.output)];
   const bool is_peak = output.name.ends_with("_peak_kW");
   const auto words = [&](double amount, std::string_view period) {
     const auto times = [&](const std::optional<double>& rate) {
@@ -229,10 +261,9 @@ std::string alarm_cost_words(const drift::SiteDrift& drift, const drift::Alarm& 
                    : cost_words(times(output.rates.per_kWh),
                                 times(output.rates.emissions_kg_per_kWh), drift.currency, period);
   };
-  std::string sentences = words(excess_so_far(drift, alarm, is_peak), "so far");
-  const auto year = expected_year(drift, alarm, is_peak);
-  const std::string of_a_year =
-      year ? words(relative_excess(drift, alarm) * *year, "a year") : std::string{};
+  const Added added = added_by(drift, explained, is_peak);
+  std::string sentences = words(added.so_far, period_words(explained));
+  const std::string of_a_year = added.a_year ? words(*added.a_year, "a year") : std::string{};
   if (of_a_year.empty()) return sentences;
   if (!sentences.empty()) sentences += " ";
   return sentences + "If it goes on, " + display::uncapitalised(of_a_year);
@@ -294,7 +325,7 @@ std::string meter_change_words(const drift::MeterChange& change) {
 
 std::string explained_sentence(const drift::SiteDrift& drift, const drift::ExplainedAlarm& alarm) {
   std::string sentence = alarm_sentence(drift, alarm.alarm);
-  if (const std::string cost = alarm_cost_words(drift, alarm.alarm); !cost.empty()) {
+  if (const std::string cost = alarm_cost_words(drift, alarm); !cost.empty()) {
     sentence += " " + cost;
   }
   if (alarm.causes.empty())

@@ -10,11 +10,11 @@ namespace recald::views {
 /// "steam uses more than forecast since 2020-04 (90 %: 2020-03 to 2020-05), …".
 [[nodiscard]] std::string alarm_sentence(const drift::SiteDrift& drift, const drift::Alarm& alarm);
 
-/// What an alarm's change costs and emits a year, if the months since it are like the others: "If
-/// it goes on, it costs about 1,240 EUR and 2.1 t of CO2 a year." Empty where the site has no
-/// prices.
+/// What an alarm's change has cost and emitted, and will in a year if it goes on: "It costs about
+/// 410 EUR so far. If it goes on, it costs about 1,240 EUR and 2.1 t of CO2 a year." Empty where
+/// the site has no prices. Alarms of one change have one cost, that of the whole change.
 [[nodiscard]] std::string alarm_cost_words(const drift::SiteDrift& drift,
-                                           const drift::Alarm& alarm);
+                                           const drift::ExplainedAlarm& explained);
 
 /// "outdoor_airflow: 5.0 before, 6.9 m3/s since (90 %: 6.2 to 7.6)".
 [[nodiscard]] std::string cause_words(const drift::SiteDrift& drift, const drift::Cause& cause);

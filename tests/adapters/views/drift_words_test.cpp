@@ -130,7 +130,7 @@ TEST_F(DriftWords, AYearsCostFollowsTheSeasonAndSoFarIsTheSum) {
     drift_.record.push_back(record);
   }
   for (std::size_t month = 21; month < 24; ++month) output.measured[month] = kAbsent;
-  const auto words = [&] { return alarm_cost_words(drift_, alarm_.alarm); };
+  const auto words = [&] { return alarm_cost_words(drift_, alarm_); };
   EXPECT_EQ(words(),
             fmt::format("It costs about {} USD so far. If it goes on, it costs about {} USD "
                         "a year.",
@@ -141,6 +141,32 @@ TEST_F(DriftWords, AYearsCostFollowsTheSeasonAndSoFarIsTheSum) {
   EXPECT_EQ(words(), fmt::format("It costs about {} USD so far.", count_text(0.1 * so_far_kWh)));
   output.rates = {};
   EXPECT_EQ(words(), "");
+}
+
+TEST_F(DriftWords, AlarmsOfOneChangeHaveItsWholeCost) {
+  drift_.outputs[0].rates.per_kWh = 0.1;
+  drift_.currency = "USD";
+  const auto day = [](const char* text) { return metering::parse_day(text).value(); };
+  alarm_.alarm.days = drift::AlarmDays{.raised = day("2022-08-03"),
+                                       .since = day("2022-07-11"),
+                                       .since_earliest = day("2022-07-11"),
+                                       .since_latest = day("2022-07-11"),
+                                       .excess = 0.4};
+  alarm_.excess = drift::Excess{.since = day("2022-07-11"),
+                                .until = day("2022-09-30"),
+                                .has_ended = false,
+                                .so_far_kWh = 12'300.0,
+                                .year_kWh = 20'000.0};
+  EXPECT_EQ(alarm_cost_words(drift_, alarm_),
+            "It costs about 1,230 USD so far. If it goes on, it costs about 2,000 USD a year.");
+  alarm_.excess->since = day("2022-03-02");
+  EXPECT_EQ(alarm_cost_words(drift_, alarm_),
+            "It costs about 1,230 USD so far, since 2022-03-02. If it goes on, it costs about "
+            "2,000 USD a year.");
+  alarm_.excess->has_ended = true;
+  alarm_.excess->year_kWh.reset();
+  EXPECT_EQ(alarm_cost_words(drift_, alarm_),
+            "It costs about 1,230 USD from 2022-03-02 to 2022-09-30.");
 }
 
 }  // namespace
