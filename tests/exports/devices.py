@@ -56,7 +56,7 @@ def influx(d):
     """Annotated CSV: a table a series, the unit in the field."""
     clock, begin, end = d.span(d.rng.choice(EUROPE), 900)
     unit = d.rng.choice(["kW", "W", "kWh"])
-    names = d.rng.sample(["main_power", "heat_pump", "kitchen"], d.rng.choice([1, 2]))
+    names = d.rng.sample(["main", "workshop", "kitchen"], d.rng.choice([1, 2]))
     meters = [Meter(name, d.load(clock, begin, end, 900), unit) for name in names]
     rows = [["#group", "false", "false", "true", "true", "false", "false", "true", "true"],
             ["#datatype", "string", "long", "dateTime:RFC3339", "dateTime:RFC3339", "dateTime:RFC3339", "double", "string", "string"],
@@ -110,7 +110,7 @@ def home_assistant_energy(d):
 
 def emoncms(d):
     clock, begin, end = d.span(d.rng.choice(EUROPE + ["Europe/London"]), 600, months=1.1)
-    meters = [Meter(name, d.load(clock, begin, end, 600), "W") for name in d.rng.sample(["use", "heatpump", "lights"], d.rng.choice([1, 2]))]
+    meters = [Meter(name, d.load(clock, begin, end, 600), "W") for name in d.rng.sample(["use", "cooker", "lights"], d.rng.choice([1, 2]))]
     rows = [["Timestamp (UTC)"] + [f"{m.label} (W)" for m in meters]]
     for i, t, _ in intervals(meters[0]):
         rows.append([str(t)] + [m.cell(i) for m in meters])

@@ -31,9 +31,9 @@ class Draw:
         return happens
 
     def span(self, zone, step, days=None, fixed=False, months=None):
-        """Clock and whole local days: of both changes of the clock, of one, or of none."""
+        """Clock and whole local days, some years ago: with both changes of the clock, one, or none."""
         rng = self.rng
-        first = datetime.date(rng.randint(2021, 2025), rng.randint(1, 12), 1 if rng.random() < 0.8 else rng.randint(2, 28))
+        first = datetime.date(rng.randint(2020, 2024), rng.randint(1, 12), 1 if rng.random() < 0.8 else rng.randint(2, 28))
         if months is None:
             months = rng.choice({900: [2, 2, 3, 4], 1800: [2, 3, 4, 6]}.get(step, [2, 3, 5, 8, 12]))
         if (days or months * 30) < 62:

@@ -21,7 +21,7 @@ NO_METER = ": is no meter of the export"
 
 # What a refusal must speak of.
 TRUE_REASONS = {
-    "unit": r"\bunits?\b|kWh or ",
+    "unit": r"--unit|\b(which|what|no|the|its|a) unit\b|kWh or ",
     "date order": r"dd/mm|mm/dd|day first|month first|days? (or|and|before) (the )?months?|order of (day|date)",
     "rows": r"twice|tells? .*apart|which meter|same (time|stamp)|more than once|duplicate",
     "clock": r"\bclock\b|time ?zone|\bzone\b",

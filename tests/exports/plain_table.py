@@ -121,8 +121,10 @@ class PlainTable:
         kinds = {"plain": 1} if self.layout == "file each" else REGISTER_KINDS
         for meter in self.meters:
             self.d.traits |= make_register(self.d.rng, meter, self.clock, kinds)
-        if self.habits.decimal == "," and self.meters[0].decimals != 0 and self.d.chance(0.1, "thousands separator"):
-            self.habits.thousands = "."
+        # Without decimals "1.234" would be a number of either kind.
+        has_decimals = all(meter.unit != "Wh" and meter.decimals != 0 for meter in self.meters)
+        if has_decimals and self.d.chance(0.1, "thousands separator"):
+            self.habits.thousands = "." if self.habits.decimal == "," else self.d.rng.choice(",,'")
 
     def damage(self):
         """Gaps, and flags in a column of their own."""

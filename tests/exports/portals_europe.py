@@ -206,7 +206,7 @@ def british_half_hours(d):
     """A row a day: 48 columns, and two more in autumn."""
     clock, begin, end = d.span("Europe/London", 1800, months=d.rng.choice([3, 6, 12]))
     meter = Meter("Electricity", d.load(clock, begin, end, 1800))
-    point = d.digits(13)
+    point, serial = d.digits(13), "E21" + d.digits(7)
     titles = d.rng.choice([[f"HH{n:02d}" for n in range(1, 51)],
                            [f"{n // 2:02d}:{n % 2 * 30:02d}" for n in range(1, 48)] + ["00:00"]])
     rows = [["MPAN", "Meter Serial", "Units", "Date"] + titles]
@@ -217,7 +217,7 @@ def british_half_hours(d):
         elif len(titles) == 48 and len(values) == 50:
             values = values[:2] + [Number(a.value + b.value, 3) for a, b in zip(values[2:4], values[4:6])] + values[6:]
             meter.has_shape = False
-        rows.append([point, "E21" + d.digits(7), "kWh", Moment(datetime.datetime.combine(date, datetime.time()), "%d/%m/%Y")] +
+        rows.append([point, serial, "kWh", Moment(datetime.datetime.combine(date, datetime.time()), "%d/%m/%Y")] +
                     values + [""] * (len(titles) - len(values)))
     d.traits.add("a row a day")
     return text_export("UK 48 columns", clock.zone, "hh.csv", rows, Habits(), d, [meter.truth(["Electricity", point, "hh", "AI"])])
@@ -245,7 +245,7 @@ def fluvius(d):
     bought = d.load(clock, begin, end, 900)
     sold = d.load(clock, begin, end, 900, "solar") if d.chance(0.6, "feed-in") else None
     parts = {"Afname": split_by_tariff(bought, clock)} | ({"Injectie": split_by_tariff(sold, clock)} if sold else {})
-    ean = f'="5414{d.digits(14)}"'
+    ean = f"5414{d.digits(14)}"
     rows = [["Van (datum)", "Van (tijdstip)", "Tot (datum)", "Tot (tijdstip)", "EAN-code", "Meter", "Metertype", "Register",
              "Volume", "Eenheid", "Validatiestatus"]]
     for i in range(len(bought.amounts)):
@@ -260,7 +260,10 @@ def fluvius(d):
     whole = [Meter("Afname", bought).truth()] + ([Meter("Injectie", sold).truth()] if sold else [])
     apart = [Meter(f"{name} {tariff}", load).truth() for name, loads in parts.items()
              for tariff, load in zip(("Dag", "Nacht"), loads)]
-    return text_export("BE Fluvius", clock.zone, "Verbruikshistoriek.csv", rows, SEMICOLON, d, whole, apart)
+    export = text_export("BE Fluvius", clock.zone, "Verbruikshistoriek.csv", rows, SEMICOLON, d, whole, apart)
+    if d.chance(0.5):  # a formula, so that a spreadsheet keeps all digits
+        export.files = {name: content.replace(ean.encode(), f'="{ean}"'.encode()) for name, content in export.files.items()}
+    return export
 
 
 def dutch_tariff_registers(d):
