@@ -129,7 +129,7 @@ def grafana(d):
         cells = [Number(m.cell(i).value, m.cell(i).decimals, unit) for m in meters]
         rows.append([Moment(clock.local(t), "%Y-%m-%d %H:%M:%S")] + cells)
     d.traits.add("unit: cell")
-    habits = Habits(space=d.rng.choice([" ", " ", "\u00a0"]))
+    habits = Habits(space=d.rng.choice([" ", " ", "\u00a0"]), trims_zeros=True)
     if rows[0] == ["sep=,"]:
         text = b"sep=,\n" + delimited(rows[1:], habits)
         return Export("Grafana", clock.zone, {"panel.csv": text}, [[m.truth() for m in meters]], d.traits)

@@ -16,6 +16,8 @@ def draw_habits(d, place):
     decimal = place[2] if rng.random() < 0.8 else "."
     habits = Habits(decimal=decimal, newline=rng.choice(["\n", "\r\n"]), trims_zeros=rng.random() < 0.15,
                     quotes_all=rng.random() < 0.12)
+    # "1.234" is a thousand where people write a decimal comma, unless other cells have other numbers of digits.
+    habits.trims_zeros |= decimal != place[2]
     habits.delimiter = rng.choices([";", ",", "\t", "|"], [6, 1 if decimal == "," else 9, 1, 0.5])[0]
     habits.encoding = rng.choices(["utf-8", "utf-8-sig", "cp1252", "utf-16"], [6, 3, 1.5, 0.7])[0]
     if habits.encoding == "cp1252" and place[1] == "pl":
@@ -306,7 +308,7 @@ class PlainTable:
     def files_of_meters(self):
         self.d.traits.add("a file a meter")
         title, lines = self.word(self.quantity), self.lines_above()
-        style = "none" if self.unit_way == "nowhere" else "("
+        style = "(" if self.unit_way == "header" else "none"
         files = {}
         for meter in self.meters:
             header = lines + [self.stamps.titles + [title_of(title, meter.unit, style)]]

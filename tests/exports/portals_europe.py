@@ -295,7 +295,8 @@ def dutch_meters_in_turn(d):
             stamp = clock.local(t).strftime("%Y-%m-%dT%H:%M:%S") + f"+0{clock.offset(t) // 3600}:00"
             rows.append([stamp, ean, meter.cell(i), meter.unit, meter.label, "true" if 7 <= clock.local(t).hour < 22 else "false"])
     d.traits |= {"one after another", "gas", "a row a meter"}
-    return text_export("NL supplier", clock.zone, "verbruik.csv", rows, Habits(quotes_all=True), d, [power.truth(), gas.truth()])
+    return text_export("NL supplier", clock.zone, "verbruik.csv", rows, Habits(quotes_all=True, trims_zeros=True), d,
+                       [power.truth(), gas.truth()])
 
 
 def eloverblik(d):
@@ -421,7 +422,7 @@ def e_redes(d):
             f"{clock.local(e):%Y/%m/%d}", f"{clock.local(e):%H:%M}")
         rows.append([serial, day, time, meter.cell(i), marks[i]])
     d.traits.add("lines above the header")
-    return text_export("PT E-REDES", clock.zone, "leituras.csv", rows, Habits(";", d.rng.choice(".,")), d, [meter.truth()])
+    return text_export("PT E-REDES", clock.zone, "leituras.csv", rows, Habits(";", d.rng.choice(".,"), trims_zeros=True), d, [meter.truth()])
 
 
 PORTALS = [datadis, e_distribucion, enedis_curve, enedis_json, off_peak_registers, german_grid, german_obis, british_supplier,
