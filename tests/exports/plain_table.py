@@ -334,6 +334,9 @@ class PlainTable:
         parts = {}
         for t, row in rows:
             parts.setdefault(f"{self.clock.local(t):%Y-%m}", []).append((t, row))
+        last = max(parts)
+        if len(parts) > 1 and len(parts[last]) == len(self.meters if self.layout == "long" else [0]):
+            parts[max(parts.keys() - {last})] += parts.pop(last)  # a register's reading at the end of the last month
         corrected = way == "overlap" and self.quantity != "register" and d.chance(0.4, "later file corrects")
         labels, files = sorted(parts), {}
         for label, following in zip(labels, labels[1:] + [None]):
