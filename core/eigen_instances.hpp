@@ -1,5 +1,6 @@
-/// Eigen's decompositions and its kernel of matrix products, compiled once for what runs with
-/// Eigen's assertions (the everyday build, core's tests) instead of in every source that uses them.
+/// Eigen's decompositions and its kernel of matrix products: of a release those that the linker is to
+/// keep; for what runs with Eigen's assertions (the everyday build, core's tests) compiled once
+/// instead of in every source that uses them.
 ///
 /// Part of the precompiled headers there (CMakeLists.txt). A source that is compiled without them
 /// makes its own instances, which are the same.

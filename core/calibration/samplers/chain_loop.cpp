@@ -1,6 +1,7 @@
 #include "core/calibration/samplers/chain_loop.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <string>
@@ -9,7 +10,30 @@ namespace recald::calibration {
 namespace {
 
 constexpr int kStartsTried = 100;
-constexpr int kLookEach = 8;
+
+/// When to look at the processor's clock, which costs as much as some evaluations of a fast
+/// density: about every sixteenth of the time that may pass.
+class Lateness {
+ public:
+  /// @return whether too much time has passed since `begin_again`.
+  [[nodiscard]] bool is_late(int done) {
+    if (done < next_look_) return false;
+    const double now_s = worked_s();
+    every_ = now_s - looked_s_ < kObserveWithin_s / 16.0 ? std::min(2 * every_, kEveryMax)
+                                                         : std::max(1, every_ / 2);
+    looked_s_ = now_s;
+    next_look_ = done + every_;
+    return now_s - begun_s_ > kObserveWithin_s;
+  }
+  void begin_again() { begun_s_ = looked_s_; }
+
+ private:
+  static constexpr int kEveryMax = 1024;
+  int every_ = 1;
+  int next_look_ = 1;
+  double looked_s_ = worked_s();
+  double begun_s_ = looked_s_;
+};
 
 Result<StartingPoint> start_at(Target& target, const Eigen::VectorXd& position) {
   if (position.size() != target.dimension()) {
@@ -82,7 +106,7 @@ Result<Chain> run_chain(ChainKernel& kernel, const SamplerOptions& options, int 
   Chain chain;
   chain.draws.resize(kept, kernel.position().size());
   chain.log_density.resize(kept);
-  double observed_s = worked_s();
+  Lateness lateness;
   for (int done = 1; done <= options.iterations; ++done) {
     TRY(kernel.step());
     if (done <= options.burn_in) {
@@ -92,9 +116,9 @@ Result<Chain> run_chain(ChainKernel& kernel, const SamplerOptions& options, int 
       chain.draws.row(done - options.burn_in - 1) = kernel.position();
       chain.log_density(done - options.burn_in - 1) = kernel.log_density();
     }
-    const bool is_late = done % kLookEach == 0 && worked_s() - observed_s > kObserveWithin_s;
-    if (!is_late && done % observe_every != 0 && done != options.iterations) continue;
-    observed_s = worked_s();
+    if (!lateness.is_late(done) && done % observe_every != 0 && done != options.iterations)
+      continue;
+    lateness.begin_again();
     if (observer && !observer(done, options.iterations)) {
       return failure(ErrorCode::cancelled,
                      "cancelled after " + std::to_string(done) + " iterations of a chain");
