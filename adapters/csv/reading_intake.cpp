@@ -221,6 +221,9 @@ Result<FileReport> ReadingIntake::end_file(std::string_view name) {
     }
     meter.readings_before = meter.report.readings;
     meter.follows = 0;
+    // Another file may begin before this one ends.
+    meter.newest_of_all = std::max(meter.newest_of_all, std::exchange(meter.newest, {}));
+    meter.last.reset();
   }
   LineIssues none;
   none.listed_max = report_.issues.listed_max;
@@ -237,9 +240,9 @@ ReadingsReport ReadingIntake::finish() {
         begin_meter(meter);
       }
     }
-    if (meter.newest) {
+    if (const auto newest = std::max(meter.newest, meter.newest_of_all)) {
       meter.report.span =
-          metering::TimeSpan{*meter.earliest, *meter.newest + meter.report.shown.interval};
+          metering::TimeSpan{*meter.earliest, *newest + meter.report.shown.interval};
     }
     report_.readings += meter.report.readings;
     report_.meters.push_back(std::move(meter.report));

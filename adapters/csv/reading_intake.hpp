@@ -43,7 +43,8 @@ struct IntakeMeter {
   std::vector<HeadRow> head;
   std::vector<metering::RegisterSample> samples;
   std::optional<metering::Instant> last;    ///< Start of the previous row.
-  std::optional<metering::Instant> newest;  ///< Latest start so far.
+  std::optional<metering::Instant> newest;  ///< Latest start of this file …
+  std::optional<metering::Instant> newest_of_all;  ///< … and of those before.
   std::optional<metering::Instant> earliest;
   std::uint64_t readings_before = 0;  ///< In earlier files.
   std::uint64_t follows = 0;          ///< In this file: readings directly after the previous one.

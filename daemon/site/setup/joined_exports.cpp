@@ -1,8 +1,14 @@
 #include "daemon/site/setup/joined_exports.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
+
+#include "adapters/csv/fields.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -16,19 +22,43 @@ bool is_same_meter(const SurveyedMeter& a, const SurveyedMeter& b) {
          (a.stamps.value == b.stamps.value || is_guessed(a.stamps) || is_guessed(b.stamps));
 }
 
-bool follows(const metering::TimeSpan& later, const metering::TimeSpan& earlier) {
-  constexpr auto kSeam = std::chrono::hours{48};
-  return later.begin > earlier.begin && later.end > earlier.end &&
-         later.begin + kSeam >= earlier.end;
+/// Of the values that both have at a stamp, the share that is the same; nothing: they share none.
+std::optional<double> share_alike(const SampledReadings& a, const SampledReadings& b) {
+  std::size_t common = 0;
+  std::size_t alike = 0;
+  for (const auto& [start, value] : a.kept()) {
+    const auto other = b.kept().find(start);
+    if (other == b.kept().end()) continue;
+    ++common;
+    const double apart = std::abs(value - other->second);
+    if (apart <= 1e-6 * std::max(std::abs(value), std::abs(other->second))) ++alike;
+  }
+  if (common == 0) return {};
+  return static_cast<double>(alike) / static_cast<double>(common);
 }
 
-/// Whether `later` goes on where `earlier` ends.
+/// One after the other, a day at the seam in both or neither; or a time that both have, where
+/// corrections make for less than half of it.
+bool continues(const SurveyedMeter& later, const SurveyedMeter& earlier) {
+  constexpr auto kSeam = std::chrono::hours{48};
+  constexpr double kCorrectedMax = 0.5;
+  const bool is_near =
+      later.span.begin <= earlier.span.end + kSeam && earlier.span.begin <= later.span.end + kSeam;
+  if (!is_near) return false;
+  if (const auto alike = share_alike(later.samples, earlier.samples)) {
+    return *alike >= kCorrectedMax;
+  }
+  return later.span.begin + kSeam >= earlier.span.end ||
+         earlier.span.begin + kSeam >= later.span.end;
+}
+
+/// Whether two exports are of the same meters.
 bool goes_on(const SurveyedExport& later, const SurveyedExport& earlier) {
   if (later.table.has_value() != earlier.table.has_value()) return false;
   if (later.table && later.table->shape != earlier.table->shape) return false;
   return std::ranges::equal(later.meters, earlier.meters,
                             [](const SurveyedMeter& b, const SurveyedMeter& a) {
-                              return is_same_meter(a, b) && follows(b.span, a.span);
+                              return is_same_meter(a, b) && continues(b, a);
                             });
 }
 
@@ -45,28 +75,44 @@ void join(SurveyedMeter& meter, const SurveyedMeter& more) {
   meter.rated_kW = std::max(meter.rated_kW, more.rated_kW);
   meter.readings += more.readings;
   meter.refused += more.refused;
-  meter.span.end = more.span.end;
+  meter.span.begin = std::min(meter.span.begin, more.span.begin);
+  meter.span.end = std::max(meter.span.end, more.span.end);
   for (const auto& [start, mean_kW] : more.samples.kept()) meter.samples.take(start, mean_kW);
 }
 
+/// What two files say of the same days; empty: the same, or none.
+std::string overlap_note(const SurveyedExport& one, const SurveyedExport& more) {
+  for (std::size_t i = 0; i < one.meters.size(); ++i) {
+    const auto alike = share_alike(more.meters[i].samples, one.meters[i].samples);
+    if (!alike || *alike == 1.0) continue;
+    return fmt::format(
+        "'{}' has other values than earlier files for some days of {}; those of the file that is "
+        "later in the list count.",
+        more.files.front().string(), csv::in_quotes(one.meters[i].name));
+  }
+  return {};
+}
+
 void join(SurveyedExport& one, SurveyedExport more) {
+  std::string note = overlap_note(one, more);
+  if (!note.empty()) one.notes.push_back(std::move(note));
   one.files.insert(one.files.end(), more.files.begin(), more.files.end());
   one.notes.insert(one.notes.end(), more.notes.begin(), more.notes.end());
   for (std::size_t i = 0; i < one.meters.size(); ++i) join(one.meters[i], more.meters[i]);
 }
 
-metering::Instant first_start(const SurveyedExport& one) {
-  return std::ranges::min(one.meters, {},
-                          [](const SurveyedMeter& meter) { return meter.span.begin; })
-      .span.begin;
+metering::Instant last_end(const SurveyedExport& one) {
+  return std::ranges::max(one.meters, {}, [](const SurveyedMeter& meter) { return meter.span.end; })
+      .span.end;
 }
 
 }  // namespace
 
 std::vector<SurveyedExport> joined_exports(std::vector<SurveyedExport> exports) {
+  // What was downloaded later ends later; of files that end together, what is named later.
   std::vector<std::size_t> by_time(exports.size());
   std::iota(by_time.begin(), by_time.end(), std::size_t{0});
-  std::ranges::stable_sort(by_time, {}, [&](std::size_t i) { return first_start(exports[i]); });
+  std::ranges::stable_sort(by_time, {}, [&](std::size_t i) { return last_end(exports[i]); });
   std::vector<std::size_t> heads;  // that others are joined to
   for (const std::size_t i : by_time) {
     const auto head = std::ranges::find_if(
