@@ -11,6 +11,8 @@
 
 #include "adapters/table/read_table.hpp"
 #include "core/absent.hpp"
+#include "core/metering/months/series_doubts.hpp"
+#include "daemon/site/replay/overlap_merge.hpp"
 #include "daemon/site/replay/register_watch.hpp"
 
 namespace recald::daemon {
@@ -90,13 +92,27 @@ Result<void> read_group(const SiteConfig& site, const FileGroup& group,
                         const metering::LocalCalendar& calendar, const csv::ReadingsSink& sink,
                         Recording& recording) {
   const GroupReader reader{site, group, calendar};
-  csv::ReadingIntake intake{reader.options(), sink};
+  OverlapMerge merge{group.meters.size(), sink};
+  csv::ReadingsSink merged = sink;
+  const bool may_overlap = group.files.size() > 1;
+  if (may_overlap) {
+    merged.on_reading = [&](const metering::Reading& reading) { merge.take(reading); };
+  }
+  csv::ReadingIntake intake{reader.options(), merged};
   for (const std::filesystem::path& file : group.files) {
     if (auto read = reader.read(file, intake); !read) return read;
     auto issues = TRY(intake.end_file(file.string()));
+    merge.end_file();
     recording.files.push_back({file, std::move(issues.issues), std::move(issues.others)});
   }
   csv::ReadingsReport report = intake.finish();
+  merge.finish();
+  if (merge.corrected() > 0) {
+    recording.notes.push_back(fmt::format(
+        "{}: of {} intervals that several files have, {} have another value in a later one, which "
+        "counts; the order of the files in the site file decides which is later.",
+        files_words(group.files), merge.repeated(), merge.corrected()));
+  }
   recording.files.back().issues.append(std::move(report.issues));
   recording.readings += report.readings;
   for (std::size_t k = 0; k < group.meters.size(); ++k) {
@@ -116,6 +132,7 @@ class SlotRecord {
     record.hours[month] = model::hourly_loads(closed.slots);
     episodes_[month] = metering::find_episodes(closed.slots);
     zero_runs_[month] = metering::find_believed_zero_runs(closed.slots);
+    doubts_.take(closed.slots);
   }
 
   /// @param figures  Of the months that were taken.
@@ -127,6 +144,7 @@ class SlotRecord {
     record.findings =
         metering::describe_data(record.meter.id, episodes_until(until, record.meter.interval),
                                 zero_runs, figures, record.level_changes, record.counts, calendar);
+    std::ranges::move(doubts_.describe(record.meter.id), std::back_inserter(record.findings));
   }
 
  private:
@@ -167,6 +185,7 @@ class SlotRecord {
 
   std::map<metering::Month, std::vector<metering::Episode>> episodes_;
   std::map<metering::Month, std::vector<TimeSpan>> zero_runs_;
+  metering::SeriesDoubts doubts_;
 };
 
 void find_changes(MeterRecord& record) {

@@ -1,0 +1,163 @@
+#include "core/metering/months/series_doubts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "core/absent.hpp"
+#include "core/statistics/quantile.hpp"
+
+namespace recald::metering {
+namespace {
+
+/// Of measured slots; NaN: none.
+double mean_of(const MonthSlots& month, int from, int to) {
+  double sum = 0.0;
+  int count = 0;
+  for (int slot = std::max(0, from); slot < std::min(to, month.grid->slots()); ++slot) {
+    const double value = month.measured_kW[static_cast<std::size_t>(slot)];
+    if (std::isnan(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? sum / count : kAbsent;
+}
+
+bool has_values(const MonthSlots& month, int from, int to) {
+  return !std::isnan(mean_of(month, from, to));
+}
+
+/// The first slot of the hour that a clock change repeats, on its day; nothing on other days.
+std::optional<int> repeated_hour(const MonthGrid& grid, int begin, int end) {
+  for (int slot = begin + 1; slot < end; ++slot) {
+    if (grid.time_of_day(slot) > grid.time_of_day(slot - 1)) continue;
+    const int per_hour = static_cast<int>(std::chrono::hours{1} / grid.interval());
+    return slot - per_hour;  // it is the second pass that begins there
+  }
+  return {};
+}
+
+/// Factors between units that people mix up, and what they mean. Smaller ones than 8 occur in
+/// buildings.
+struct UnitFactor {
+  double factor;
+  const char* meaning;
+};
+constexpr std::array<UnitFactor, 6> kUnitFactors{{{29.307, "kWh in a therm"},
+                                                  {1000.0, "Wh in a kWh"},
+                                                  {10.55, "kWh in a cubic metre of gas"},
+                                                  {293.07, "kWh in an MMBtu"},
+                                                  {277.78, "kWh in a GJ"},
+                                                  {3412.1, "BTU in a kWh"}}};
+constexpr double kFactorOff = 0.06;  // of its logarithm, what a week's load does by itself
+constexpr std::size_t kDaysBeside = 7;
+
+const UnitFactor* unit_factor(double ratio) {
+  const double size = std::abs(std::log(ratio));
+  const auto found = std::ranges::find_if(kUnitFactors, [&](const UnitFactor& one) {
+    return std::abs(size - std::log(one.factor)) < kFactorOff;
+  });
+  return found == kUnitFactors.end() ? nullptr : &*found;
+}
+
+/// A day and its mean.
+struct DayMean {
+  Day date;
+  double kW;
+};
+
+DataFinding unit_finding(std::string_view meter, const DayMean& day, double ratio,
+                         const UnitFactor& factor) {
+  std::array<char, 64> times{};
+  std::snprintf(times.data(), times.size(), ratio > 1.0 ? "%.3g times" : "1/%.3g of",
+                ratio > 1.0 ? ratio : 1.0 / ratio);
+  return {.meter = std::string{meter},
+          .sentence = "From " + to_string(day.date) + " on it reads " + times.data() +
+                      " what it read in the week before: probably another unit (there are " +
+                      std::to_string(static_cast<int>(std::lround(factor.factor))) + " " +
+                      factor.meaning + "). Give each part its own [[meter]] and unit.",
+          .span = {},
+          .slots = 0,
+          .grade = DataFinding::Grade::warning};
+}
+
+/// Where a unit changes from one day to the next, both weeks beside it agree, and so do the two
+/// days.
+std::vector<DataFinding> unit_changes(std::string_view meter, const std::vector<DayMean>& days) {
+  std::vector<DataFinding> findings;
+  for (std::size_t i = kDaysBeside; i + kDaysBeside <= days.size(); ++i) {
+    std::vector<double> before;
+    std::vector<double> since;
+    for (std::size_t k = 1; k <= kDaysBeside; ++k) {
+      before.push_back(days[i - k].kW);
+      since.push_back(days[i + k - 1].kW);
+    }
+    const double ratio = median(since) / median(before);
+    if (!(ratio > 0.0) || std::isinf(ratio)) continue;
+    const UnitFactor* factor = unit_factor(ratio);
+    if (factor == nullptr) continue;
+    const double sharp = ratio > 1.0 ? std::ranges::min(since) / std::ranges::max(before)
+                                     : std::ranges::min(before) / std::ranges::max(since);
+    if (sharp * 4.0 < factor->factor) continue;
+    findings.push_back(unit_finding(meter, days[i], ratio, *factor));
+    i += kDaysBeside;
+  }
+  return findings;
+}
+
+}  // namespace
+
+void SeriesDoubts::take(const MonthSlots& month) {
+  const MonthGrid& grid = *month.grid;
+  OneMonth& one = months_[grid.month()] = {};
+  const int per_hour = static_cast<int>(std::chrono::hours{1} / grid.interval());
+  for (int day = 0; day < grid.days(); ++day) {
+    const int begin = grid.day_begins()[static_cast<std::size_t>(day)];
+    const int end = grid.day_begins()[static_cast<std::size_t>(day) + 1];
+    one.days_kW.push_back(mean_of(month, begin, end));
+    const auto first = repeated_hour(grid, begin, end);
+    if (!first || per_hour < 1) continue;
+    const int second = *first + per_hour;
+    const bool stands_once =
+        has_values(month, *first, second) && !has_values(month, second, second + per_hour);
+    const double beside = 0.5 * (mean_of(month, *first - per_hour, *first) +
+                                 mean_of(month, second + per_hour, second + 2 * per_hour));
+    const double ratio = mean_of(month, *first, second) / beside;
+    constexpr double kSummedMin = 1.6;
+    constexpr double kSummedMax = 2.4;
+    if (!stands_once || !(ratio > kSummedMin && ratio < kSummedMax)) continue;
+    one.summed.push_back({{grid.start(*first), grid.start(second + per_hour)}, ratio});
+  }
+}
+
+std::vector<DataFinding> SeriesDoubts::describe(std::string_view meter) const {
+  std::vector<DataFinding> findings;
+  std::vector<DayMean> days;
+  for (const auto& [month, one] : months_) {
+    for (std::size_t day = 0; day < one.days_kW.size(); ++day) {
+      if (std::isnan(one.days_kW[day])) continue;
+      days.push_back({month / std::chrono::day{static_cast<unsigned>(day) + 1}, one.days_kW[day]});
+    }
+    for (const SummedHour& hour : one.summed) {
+      std::array<char, 32> ratio{};
+      std::snprintf(ratio.data(), ratio.size(), "%.2g", hour.ratio);
+      findings.push_back(
+          {.meter = std::string{meter},
+           .sentence = "The hour that the clock repeats stands once in the file, with " +
+                       std::string{ratio.data()} +
+                       " times the load of the hours beside it: probably both hours added up, and "
+                       "no peak (" +
+                       to_string(hour.span.begin) + ").",
+           .span = hour.span,
+           .slots = 0,
+           .grade = DataFinding::Grade::warning});
+    }
+  }
+  std::ranges::move(unit_changes(meter, days), std::back_inserter(findings));
+  return findings;
+}
+
+}  // namespace recald::metering

@@ -1,0 +1,105 @@
+/// Hours added up where clocks change, and units that change on a day, in loads drawn by program.
+#include "core/metering/months/series_doubts.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/random/rng.hpp"
+#include "month_builder.hpp"
+
+namespace recald::metering::series_doubts_test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::Field;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::kBlank;
+using testing::month;
+using testing::month_reading;
+
+std::vector<DataFinding> findings_of(const std::vector<MonthSlots>& months) {
+  SeriesDoubts doubts;
+  for (const MonthSlots& one : months) doubts.take(one);
+  return doubts.describe("main");
+}
+
+/// A load with days, nights and noise. @param factor  By day of the month, from 0.
+template <class Factor>
+MonthSlots load(const std::string& zone, Month which, std::chrono::seconds interval, Rng& rng,
+                Factor factor) {
+  const double a_day = 86'400.0 / static_cast<double>(interval.count());
+  return month_reading(zone, which, interval, [&](int slot) {
+    const double hour = 24.0 * std::fmod(slot / a_day, 1.0);
+    const double usual = 30.0 + 15.0 * std::sin((hour - 8.0) * 0.2618);
+    return factor(static_cast<int>(slot / a_day)) * usual * rng.uniform(0.93, 1.07);
+  });
+}
+
+struct Change {
+  const char* zone;
+  Month month;
+  int first;  ///< Hour of the month, from its begin, that is repeated an hour later.
+};
+
+TEST(SeriesDoubts, TwoHoursInOneAreTold) {
+  Rng rng{5};
+  // 26 October 2025 02:00 of Berlin, 2 November 2025 01:00 of Chicago, 6 April 2025 02:00 of
+  // Sydney.
+  const std::vector<Change> changes{{"Europe/Berlin", month(2025, 10), 25 * 24 + 2},
+                                    {"America/Chicago", month(2025, 11), 24 + 1},
+                                    {"Australia/Sydney", month(2025, 4), 5 * 24 + 2}};
+  for (const Change& change : changes) {
+    for (const int minutes : {15, 30, 60}) {
+      SCOPED_TRACE(std::string{change.zone} + " " + std::to_string(minutes));
+      const int per_hour = 60 / minutes;
+      MonthSlots whole = load(change.zone, change.month, std::chrono::minutes{minutes}, rng,
+                              [](int) { return 1.0; });
+      EXPECT_THAT(findings_of({whole}), IsEmpty());
+      MonthSlots once = whole;
+      for (int k = 0; k < per_hour; ++k) {
+        const auto first = static_cast<std::size_t>(change.first * per_hour + k);
+        const auto second = first + static_cast<std::size_t>(per_hour);
+        once.measured_kW[second] = kBlank;
+        // One that is merely missing is a gap, and no news here.
+        EXPECT_THAT(findings_of({once}), IsEmpty());
+        once.measured_kW[first] += whole.measured_kW[second];
+      }
+      EXPECT_THAT(findings_of({once}),
+                  ElementsAre(Field(&DataFinding::sentence, HasSubstr("both hours added up"))));
+    }
+  }
+}
+
+TEST(SeriesDoubts, AnotherUnitFromADayOnIsTold) {
+  Rng rng{6};
+  for (const double factor : {29.307, 1.0 / 29.307, 1000.0, 1e-3, 10.55, 1.0 / 10.55}) {
+    for (const int since : {9, 15, 20}) {
+      const auto found =
+          findings_of({load("Europe/Berlin", month(2025, 5), std::chrono::minutes{30}, rng,
+                            [&](int day) { return day >= since ? factor : 1.0; })});
+      ASSERT_EQ(found.size(), 1U) << factor << " " << since;
+      EXPECT_THAT(found[0].sentence, HasSubstr("From 2025-05-" + std::string(since < 9 ? "0" : "") +
+                                               std::to_string(since + 1) + " on"))
+          << factor;
+    }
+  }
+}
+
+// Buildings double, halve, close for weeks and open again.
+TEST(SeriesDoubts, ABuildingIsNoUnit) {
+  Rng rng{7};
+  for (int draw = 0; draw < 300; ++draw) {
+    const double factor = std::exp(rng.uniform(-2.0, 2.0));
+    const int since = static_cast<int>(rng.below(30));
+    EXPECT_THAT(findings_of({load("Europe/Berlin", month(2025, 5), std::chrono::minutes{60}, rng,
+                                  [&](int day) { return day >= since ? factor : 1.0; })}),
+                IsEmpty())
+        << factor << " " << since;
+  }
+}
+
+}  // namespace
+}  // namespace recald::metering::series_doubts_test
