@@ -286,11 +286,36 @@ class TableReader {
     if (written->utc_offset) return written->clock - *written->utc_offset;
     ++facts_.naive;
     const auto instant = clocks_[clock].instant_of(written->clock);
+    if (clocks_[clock].hour() != ClockReader::Hour::usual) {
+      count_change(row, clocks_[clock].hour(), written->clock);
+    }
     if (instant) return instant;
     ++facts_.skipped;
     return refuse("timestamp " + in_quotes(text) + " does not exist in " + calendar_.zone_name() +
                   ", whose clock jumps over it; if the meter's clock is never changed, give its "
                   "own zone as 'timezone', such as \"Etc/GMT-1\"");
+  }
+
+  void count_change(const TableRow& row, ClockReader::Hour hour, Instant clock) {
+    const bool has_value = std::ranges::any_of(value_, [&](std::size_t column) {
+      return parse_cell(cell(row, column), shape_.decimal).value_or(0.0) != 0.0;
+    });
+    if (!has_value) return;
+    ClockChange& change =
+        facts_.changes[metering::Day{std::chrono::floor<std::chrono::days>(clock)}];
+    switch (hour) {
+      case ClockReader::Hour::skipped:
+        ++change.skipped;
+        break;
+      case ClockReader::Hour::first:
+        ++change.first;
+        break;
+      case ClockReader::Hour::second:
+        ++change.second;
+        break;
+      case ClockReader::Hour::usual:
+        break;
+    }
   }
 
   void read_wide(const TableRow& row) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 
@@ -17,10 +18,19 @@ namespace recald::table {
 [[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(const std::filesystem::path& file,
                                                            const TableShape& shape);
 
+/// The rows of a day on which the clock changes, if they have a value that is not zero: some
+/// programs fill an hour that was never measured.
+struct ClockChange {
+  std::uint64_t skipped = 0;  ///< In the hour that the clock skips …
+  std::uint64_t first = 0;    ///< … in the one that it shows twice, the first time …
+  std::uint64_t second = 0;   ///< … and the second.
+};
+
 /// What was found out about clocks while a table was read.
 struct ClockFacts {
   std::uint64_t naive = 0;    ///< Stamps without an offset.
   std::uint64_t skipped = 0;  ///< Of these, times that the clock skips.
+  std::map<metering::Day, ClockChange> changes;
 };
 
 /// The intake's settings for these meters.

@@ -520,7 +520,9 @@ class TableSniffer {
 
 }  // namespace
 
-Result<TableGuess> guess_table(std::span<const KeptRow> rows) { return TableSniffer{rows}.run(); }
+Result<TableGuess> guess_table(std::span<const KeptRow> rows, const TableHints&) {
+  return TableSniffer{rows}.run();
+}
 
 Result<Container> guess_container(std::string_view first_bytes) {
   const auto begins = [&](std::string_view mark) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,16 @@ inline constexpr std::size_t kSniffedRows = 2000;  ///< The guess is based on th
 struct KeptRow {
   std::uint64_t number;
   std::vector<std::string> cells;  ///< UTF-8.
+};
+
+/// What somebody says of a table; nothing of that is guessed.
+struct TableHints {
+  std::string time_column;           ///< By name or "#3"; empty: found.
+  std::string meter_column;          ///< Likewise.
+  std::vector<std::string> columns;  ///< With values; empty: found.
+  std::optional<TimeFormat> dates;   ///< The order of a date's parts.
+  std::optional<char> decimal;
+  std::string sheet;  ///< Of a workbook.
 };
 
 struct GuessedColumn {
@@ -41,7 +52,8 @@ struct TableGuess {
 /// Finds header, times, numbers, meters and units in the first rows of a table.
 /// @return malformed: a sentence on what cannot be understood, without the file's name: no times,
 ///         no numbers, two headers, formats that change.
-[[nodiscard]] Result<TableGuess> guess_table(std::span<const KeptRow> rows);
+[[nodiscard]] Result<TableGuess> guess_table(std::span<const KeptRow> rows,
+                                             const TableHints& hints = {});
 
 /// The container, from a file's first bytes. @return or malformed: what the file
 /// seems to be instead

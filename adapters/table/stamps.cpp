@@ -271,6 +271,7 @@ std::optional<Instant> ClockReader::instant_of(Instant clock) {
   const auto after = with(calendar_->utc_offset(clock + days{1}));
   if (!before || !after || *before == *after) {
     in_second_pass_ = false;
+    hour_ = before || after ? Hour::usual : Hour::skipped;
     return before ? before : after;
   }
   const Instant first = std::min(*before, *after);
@@ -278,6 +279,7 @@ std::optional<Instant> ClockReader::instant_of(Instant clock) {
   if (last && clock < *last) in_second_pass_ = true;
   // If a file is sorted by the written stamp, both occurrences of a time are neighbours.
   const bool is_second = in_second_pass_ || (last && clock == *last);
+  hour_ = is_second ? Hour::second : Hour::first;
   return is_second ? second : first;
 }
 

@@ -47,13 +47,20 @@ class ClockReader {
   /// @param calendar  Outlives this.
   explicit ClockReader(const metering::LocalCalendar& calendar) : calendar_{&calendar} {}
 
+  /// Of a time, where the clock changes.
+  enum class Hour : std::uint8_t { usual, skipped, first, second };
+
   /// @return nothing for a time that the clock skips.
   [[nodiscard]] std::optional<metering::Instant> instant_of(metering::Instant clock);
+
+  /// Of the last time that was converted.
+  [[nodiscard]] Hour hour() const { return hour_; }
 
  private:
   const metering::LocalCalendar* calendar_;
   std::optional<metering::Instant> last_clock_;
   bool in_second_pass_ = false;
+  Hour hour_ = Hour::usual;
 };
 
 }  // namespace recald::table

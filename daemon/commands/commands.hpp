@@ -75,6 +75,7 @@ struct CalibrateArguments : SiteArguments, SamplingArguments {
 struct ReportArguments : CalibrateArguments {
   std::vector<std::filesystem::path> files;
   std::string timezone;  ///< Of exports: IANA name, or empty.
+  SurveyHints hints;     ///< Of exports.
 };
 
 struct ScreenArguments {
@@ -136,7 +137,8 @@ struct InitArguments {
   std::vector<std::filesystem::path> files;
   std::filesystem::path out;  ///< Folder for site.toml; empty: here.
   std::string timezone;       ///< IANA name, or empty.
-  bool asks_nothing = true;   ///< For scripts that say so; it never asks.
+  bool asks_nothing = false;  ///< Not even where somebody could be asked.
+  SurveyHints hints;
   StarterRequest starter;
   bool json = false;
 };

@@ -166,6 +166,48 @@ void add_calibrate(CLI::App& command, CalibrateArguments& arguments) {
   show_first(command, {"--model", "--doe", "--out", "--seed", "--json"});
 }
 
+/// What an export's owner may say of it.
+void add_survey_hints(CLI::App& command, SurveyHints& hints) {
+  command.add_option("--unit", hints.units,
+                     "Unit of the meters that say none, or NAME=UNIT of one; may be repeated");
+  command.add_option("--column", hints.table.columns,
+                     "Column with a meter's values; may be repeated; the others are left out");
+  command.add_option("--time-column", hints.table.time_column, "Column with the times");
+  command.add_option("--meter-column", hints.table.meter_column,
+                     "Column that names each row's meter");
+  command.add_option("--sheet", hints.table.sheet, "Sheet of a workbook");
+  command
+      .add_option_function<std::string>(
+          "--dates",
+          [&hints](const std::string& text) {
+            const auto at = std::ranges::find(table::kTimeFormats, text);
+            hints.table.dates = static_cast<table::TimeFormat>(at - table::kTimeFormats.begin());
+          },
+          "Order of a date's parts")
+      ->check(one_of({table::kTimeFormats.begin(), table::kTimeFormats.end()}));
+  command
+      .add_option_function<std::string>(
+          "--decimal", [&hints](const std::string& text) { hints.table.decimal = text.front(); },
+          "Decimal sign of its numbers")
+      ->check(one_of({".", ","}));
+  command
+      .add_option_function<std::string>(
+          "--stamps",
+          [&hints](const std::string& text) {
+            hints.stamps = text == "end" ? csv::Stamps::end : csv::Stamps::start;
+          },
+          "Whether stamps are the starts or the ends of intervals")
+      ->check(one_of({"start", "end"}));
+  command
+      .add_option_function<int>(
+          "--interval", [&hints](int minutes) { hints.interval = std::chrono::minutes{minutes}; },
+          "Minutes that a value stands for")
+      ->check(CLI::Range(1, 60));
+  command.add_option("--clock", hints.clock,
+                     "Zone of the stamps, if it is not the building's: Etc/GMT-1 is Central "
+                     "Europe's winter time all year");
+}
+
 void add_report(CLI::App& command, ReportArguments& arguments) {
   command
       .add_option(
@@ -178,6 +220,7 @@ void add_report(CLI::App& command, ReportArguments& arguments) {
   command.add_option("--timezone", arguments.timezone,
                      "The building's zone, such as Europe/Berlin, for exports whose stamps have no "
                      "offset");
+  add_survey_hints(command, arguments.hints);
   show_first(command, {"--timezone", "--out", "--seed", "--threads", "--json"});
 }
 
@@ -394,8 +437,9 @@ void add_init(CLI::App& command, InitArguments& arguments) {
   area->needs(use);
   command.add_option("--storeys", starter.storeys, "Storeys")->capture_default_str()->needs(use);
   command.add_option("--built", starter.built, "Year of construction")->needs(use);
+  add_survey_hints(command, arguments.hints);
   command.add_flag("--yes", arguments.asks_nothing,
-                   "Accepted for scripts; recald init asks nothing");
+                   "Ask nothing: what no evidence settles is refused, as without a terminal");
   add_json(command, arguments);
   show_first(command, {"--out", "--timezone", "--epw", "--use", "--area", "--storeys", "--built"});
 }

@@ -1,10 +1,14 @@
 #include "daemon/commands/model/export_draft.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <span>
 
+#include "adapters/csv/fields.hpp"
 #include "daemon/site/setup/joined_exports.hpp"
 
 namespace recald::daemon {
@@ -25,14 +29,90 @@ Guess<std::string> zone_of_draft(const std::string& given,
   return {"Etc/UTC", "guessed: no stamp is local; months are, so name the building's zone"};
 }
 
+constexpr double kMonth_h = 730.0;
+constexpr double kYear_h = 8760.0;
+
+/// Three digits, or all before the point.
+std::string short_number(double value) {
+  const double size = std::abs(value);
+  if (size >= 100.0 || size == 0.0) return fmt::format("{:.0f}", value);
+  return size >= 10.0 ? fmt::format("{:.1f}", value) : fmt::format("{:.3g}", value);
+}
+
 std::string unit_words(const SurveyedMeter& meter) {
   return meter.is_register ? meter.unit.value + ", a register" : meter.unit.value;
+}
+
+/// What a person answers. @return empty: nothing that helps
+std::string answer_to(const OpenQuestion& question, const Console& console) {
+  console.out << question.words << "\n  " << fmt::format("{}", fmt::join(question.answers, ", "))
+              << "? " << std::flush;
+  std::string line;
+  if (!std::getline(*console.answers, line)) return {};
+  return std::string{csv::trimmed(line)};
+}
+
+void take_answer(const OpenQuestion& question, const std::string& answer, SurveyHints& hints) {
+  if (question.option == "--unit") {
+    hints.units.push_back(question.subject + "=" + answer);
+  } else if (question.option == "--dates") {
+    const auto at = std::ranges::find(table::kTimeFormats, answer);
+    if (at == table::kTimeFormats.end()) return;
+    hints.table.dates = static_cast<table::TimeFormat>(at - table::kTimeFormats.begin());
+  } else if (question.option == "--decimal" && !answer.empty()) {
+    hints.table.decimal = answer.front();
+  }
+}
+
+/// "… Say which: --unit 'Valeur=kWh', or kW, Wh, W."
+std::string refusal_of(const OpenQuestion& question) {
+  const std::string subject = question.subject.empty() ? "" : question.subject + "=";
+  const std::span others = std::span{question.answers}.subspan(1);
+  return fmt::format("{} Run again with {} {}, or {}", question.words, question.option,
+                     shell_word(subject + question.answers.front()), fmt::join(others, ", "));
+}
+
+/// Of a building's meter as a whole: what a town uses.
+constexpr double kMean_kW_max = 100'000.0;
+
+/// A sentence on a meter that cannot be what it seems; empty: none is.
+std::string implausible(const SurveyedExport& survey) {
+  for (const SurveyedMeter& meter : survey.meters) {
+    if (std::abs(meter.mean_kW) <= kMean_kW_max) continue;
+    return fmt::format(
+        "'{}': {} would use {:.0f} MW in the mean, which no building does; its unit is taken for "
+        "{} ({}). Give --unit, or name the columns that are meters with --column",
+        survey.files.front().string(), csv::in_quotes(meter.name), 1e-3 * meter.mean_kW,
+        meter.unit.value, meter.unit.because);
+  }
+  return {};
+}
+
+/// Asks until nothing is open. @return or the exit code after saying what is wrong
+tl::expected<SurveyedExport, int> survey_aloud(
+    const std::filesystem::path& file, const std::optional<metering::LocalCalendar>& calendar,
+    SurveyHints& hints, const Console& console) {
+  for (;;) {
+    auto survey = survey_export(file, calendar, hints);
+    if (!survey) return tl::unexpected(console.fail(survey.error()));
+    if (survey->questions.empty()) {
+      if (const std::string why = implausible(*survey); !why.empty()) {
+        return tl::unexpected(console.fail(why));
+      }
+      return std::move(*survey);
+    }
+    const OpenQuestion& question = survey->questions.front();
+    const std::string answer =
+        console.answers == nullptr ? std::string{} : answer_to(question, console);
+    if (answer.empty()) return tl::unexpected(console.fail(refusal_of(question)));
+    take_answer(question, answer, hints);
+  }
 }
 
 }  // namespace
 
 tl::expected<ExportDraft, int> draft_aloud(const std::vector<std::filesystem::path>& files,
-                                           const std::string& timezone,
+                                           const std::string& timezone, SurveyHints hints,
                                            const std::filesystem::path& folder,
                                            const Console& console) {
   std::optional<metering::LocalCalendar> calendar;
@@ -51,8 +131,8 @@ tl::expected<ExportDraft, int> draft_aloud(const std::vector<std::filesystem::pa
       return tl::unexpected(
           console.misused(fmt::format("'{}' is named twice; name it once", one.string())));
     }
-    auto survey = survey_export(one, calendar);
-    if (!survey) return tl::unexpected(console.fail(survey.error()));
+    auto survey = survey_aloud(one, calendar, hints, console);
+    if (!survey) return tl::unexpected(survey.error());
     exports.push_back(std::move(*survey));
   }
   exports = joined_exports(std::move(exports));
@@ -63,20 +143,30 @@ tl::expected<ExportDraft, int> draft_aloud(const std::vector<std::filesystem::pa
     if (!opened) return tl::unexpected(console.fail(opened.error()));
     calendar = std::move(*opened);
   }
-  return ExportDraft{std::move(exports), std::move(zone), std::move(*calendar), std::move(draft)};
+  return ExportDraft{std::move(exports), std::move(zone), std::move(*calendar), std::move(draft),
+                     std::move(hints)};
 }
 
-void print_draft(const ExportDraft& drafted, std::string_view look, const Console& console) {
-  const auto& [exports, timezone, calendar, draft] = drafted;
+void print_draft(const ExportDraft& drafted, std::string_view look, std::optional<double> area_m2,
+                 const Console& console) {
+  const auto& [exports, timezone, calendar, draft, hints] = drafted;
+  console.out << fmt::format("  {:<24} {:<13} {:<16} {:>6}  {:<10} {:<10} {:>10} {:>12}{} {:>8}\n",
+                             "meter", "utility", "unit", "every", "from", "to", "mean kW",
+                             "kWh a month", area_m2 ? "  kWh/m2 a" : "", "measured");
   std::size_t number = 0;
   for (const SurveyedExport& one : exports) {
     for (const SurveyedMeter& meter : one.meters) {
       const metering::Instant last = meter.span.end - std::chrono::seconds{1};
+      const double intervals = static_cast<double>(meter.span.length() / meter.interval);
       console.out << fmt::format(
-          "  {:<24} {:<14} {:<16} every {} min, {} to {}\n", draft.meter_ids[number++],
-          metering::to_string(meter.utility.value), unit_words(meter), meter.interval.count() / 60,
+          "  {:<24} {:<13} {:<16} {:>2} min  {} {} {:>10} {:>12}{} {:>6.1f} %\n",
+          draft.meter_ids[number++], metering::to_string(meter.utility.value), unit_words(meter),
+          meter.interval.count() / 60,
           metering::to_string(calendar.local_time(meter.span.begin).date),
-          metering::to_string(calendar.local_time(last).date));
+          metering::to_string(calendar.local_time(last).date), short_number(meter.mean_kW),
+          short_number(kMonth_h * meter.mean_kW),
+          area_m2 ? fmt::format(" {:>9}", short_number(kYear_h * meter.mean_kW / *area_m2)) : "",
+          std::min(100.0, 100.0 * static_cast<double>(meter.values) / intervals));
     }
   }
   std::vector<std::string> guesses = draft.guesses;
@@ -105,6 +195,24 @@ nlohmann::ordered_json meters_json(const ExportDraft& drafted) {
     }
   }
   return meters;
+}
+
+std::string hint_words(const SurveyHints& hints) {
+  std::string words;
+  const auto add = [&](std::string_view option, const std::string& value) {
+    if (!value.empty()) words += fmt::format(" {} {}", option, shell_word(value));
+  };
+  for (const std::string& unit : hints.units) add("--unit", unit);
+  for (const std::string& column : hints.table.columns) add("--column", column);
+  add("--time-column", hints.table.time_column);
+  add("--meter-column", hints.table.meter_column);
+  add("--sheet", hints.table.sheet);
+  if (hints.table.dates) add("--dates", std::string{table::to_string(*hints.table.dates)});
+  if (hints.table.decimal) add("--decimal", std::string{*hints.table.decimal});
+  if (hints.stamps) add("--stamps", *hints.stamps == csv::Stamps::end ? "end" : "start");
+  if (hints.interval) add("--interval", fmt::format("{}", hints.interval->count() / 60));
+  add("--clock", hints.clock);
+  return words;
 }
 
 std::string shell_word(const std::filesystem::path& path) {

@@ -20,9 +20,12 @@ int run_init(const InitArguments& arguments, const Console& console) {
                     "move it away",
                     file.string()));
   }
-  const auto prepared = draft_aloud(arguments.files, arguments.timezone, folder, console);
+  const Console asking{console.out, console.err, console.is_terminal, console.detail,
+                       arguments.asks_nothing || arguments.json ? nullptr : console.answers};
+  const auto prepared =
+      draft_aloud(arguments.files, arguments.timezone, arguments.hints, folder, asking);
   if (!prepared) return prepared.error();
-  const auto& [exports, timezone, calendar, draft] = *prepared;
+  const auto& [exports, timezone, calendar, draft, hints] = *prepared;
   // Nothing is written that would not load.
   const auto drafted = parse_site(draft.text, file);
   if (!drafted) return console.fail(drafted.error());
@@ -44,7 +47,9 @@ int run_init(const InitArguments& arguments, const Console& console) {
     console.out << json.dump(2) << "\n";
     return kSuccess;
   }
-  print_draft(*prepared, "Look at these; the file says more beside its keys:", console);
+  const double area_m2 = arguments.starter.floor_area_m2;
+  print_draft(*prepared, "Look at these; the file says more beside its keys:",
+              area_m2 > 0.0 ? std::optional{area_m2} : std::nullopt, console);
   console.out << fmt::format("Wrote {} with {} meter{}. Next:\n  {}\n", file.string(),
                              draft.meter_ids.size(), draft.meter_ids.size() == 1 ? "" : "s", next);
   return kSuccess;

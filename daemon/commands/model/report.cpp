@@ -91,10 +91,12 @@ struct InitCommand {
 };
 
 /// What makes a site file of the same exports. It writes over none.
-InitCommand init_command(const ReportArguments& arguments, const std::string& zone) {
+InitCommand init_command(const ReportArguments& arguments, const std::string& zone,
+                         const SurveyHints& hints) {
   InitCommand command{"recald init", "site.toml"};
   for (const auto& file : arguments.files) command.words += " " + shell_word(file);
   if (!zone.empty()) command.words += " --timezone " + zone;
+  command.words += hint_words(hints);
   std::error_code ignored;
   if (std::filesystem::exists(command.file, ignored)) {
     const std::filesystem::path folder = arguments.files.front().stem();
@@ -107,14 +109,14 @@ InitCommand init_command(const ReportArguments& arguments, const std::string& zo
 int report_exports(const ReportArguments& arguments, const Console& console) {
   const std::string zone = given_zone(arguments, console);
   const std::filesystem::path here{"site.toml"};  // where recald init would write
-  const auto drafted = draft_aloud(arguments.files, zone, ".", console);
+  const auto drafted = draft_aloud(arguments.files, zone, arguments.hints, ".", console);
   if (!drafted) return drafted.error();
   auto config = parse_site(drafted->draft.text, here);
   if (!config) return console.fail(config.error());
   config->unwritten = drafted->draft.text;
   const OpenSite site{std::move(*config), drafted->calendar};
   if (!write_meters_page(site, arguments.out, console)) return kFailure;
-  const InitCommand init = init_command(arguments, zone);
+  const InitCommand init = init_command(arguments, zone, drafted->hints);
   if (arguments.json) {
     const nlohmann::ordered_json json{{"page", arguments.out.string()},
                                       {"meters", meters_json(*drafted)},
@@ -124,7 +126,7 @@ int report_exports(const ReportArguments& arguments, const Console& console) {
     console.out << json.dump(2) << "\n";
     return kSuccess;
   }
-  print_draft(*drafted, "Look at these, on which the page rests:", console);
+  print_draft(*drafted, "Look at these, on which the page rests:", {}, console);
   console.out << fmt::format(
       "Wrote {}. To correct a guess, and to go on from here:\n  {}\nwrites {} with each guess "
       "beside its key.\n",

@@ -18,6 +18,7 @@
 #include "adapters/table/xlsx.hpp"
 #include "core/text/ascii.hpp"
 #include "daemon/site/replay/register_watch.hpp"
+#include "daemon/site/setup/clock_evidence.hpp"
 #include "daemon/site/setup/utility_guess.hpp"
 
 namespace recald::daemon {
@@ -81,22 +82,25 @@ Result<std::vector<table::KeptRow>> head_of(const std::filesystem::path& file,
 }
 
 Result<table::TableGuess> guess_text(const std::filesystem::path& file,
-                                     const std::vector<std::string>& lines) {
+                                     const std::vector<std::string>& lines,
+                                     const table::TableHints& hints) {
   table::TableShape shape;
   shape.separator = table::guess_separator(lines);
   const auto head = TRY(head_of(file, shape));
-  auto guess = table::guess_table(head);
+  auto guess = table::guess_table(head, hints);
   if (guess) guess->shape.separator = shape.separator;
   return guess;
 }
 
 /// The first sheet that has a table.
-Result<table::TableGuess> guess_workbook(const std::filesystem::path& file) {
+Result<table::TableGuess> guess_workbook(const std::filesystem::path& file,
+                                         const table::TableHints& hints) {
   const auto names = TRY(table::sheet_names(file));
   std::optional<Error> first;
   for (const std::string& name : names) {
+    if (!hints.sheet.empty() && name != hints.sheet) continue;
     const auto head = TRY(head_of(file, {.container = Container::xlsx, .sheet = name}));
-    auto guess = table::guess_table(head);
+    auto guess = table::guess_table(head, hints);
     if (guess) {
       guess->shape.container = Container::xlsx;
       guess->shape.sheet = name;
@@ -107,21 +111,22 @@ Result<table::TableGuess> guess_workbook(const std::filesystem::path& file) {
   return tl::unexpected(first.value_or(Error{ErrorCode::malformed, "it has no sheet"}));
 }
 
+/// A unit that nothing says is asked for once its values are known; kWh shows them as they are.
+std::string unit_read(const SurveyedMeter& meter) {
+  return meter.unit.value.empty() ? "kWh" : meter.unit.value;
+}
+
 /// A meter before anything is known of its readings.
 SurveyedMeter described(std::string name, std::string name_in_file, std::string column,
                         std::string unit, std::string unit_because) {
   SurveyedMeter meter;
   const UtilityGuess utility = guess_utility(name, unit);
-  if (unit.empty()) {
-    unit = "kWh";
-    unit_because = "guessed: nothing says the unit";
-  }
   meter.name = std::move(name);
   meter.name_in_file = std::move(name_in_file);
   meter.column = std::move(column);
   meter.unit = {std::move(unit), std::move(unit_because)};
   meter.utility = {utility.utility, utility.because};
-  const auto conversion = metering::find_unit(meter.unit.value, utility.utility, {});
+  const auto conversion = metering::find_unit(unit_read(meter), utility.utility, {});
   meter.needs_heating_value = !conversion && conversion.error().code == ErrorCode::unsupported &&
                               utility.utility == metering::Utility::gas;
   return meter;
@@ -204,6 +209,7 @@ Result<std::vector<SurveyedMeter>> meters_of_feed(const std::filesystem::path& f
 struct MeterWatch {
   RegisterWatch as_register;
   std::uint64_t values = 0;
+  double sum_kW = 0.0;
   std::uint64_t zeros = 0;
   std::uint64_t negatives = 0;
   std::uint64_t frozen = 0;
@@ -214,6 +220,7 @@ struct MeterWatch {
     if (std::isnan(reading.mean_kW)) return;
     as_register.take(reading);
     ++values;
+    sum_kW += reading.mean_kW;
     if (reading.mean_kW == 0.0) ++zeros;
     if (reading.mean_kW < 0.0) ++negatives;
     run = values > 1 && reading.mean_kW == last && last != 0.0 ? run + 1 : 1;
@@ -249,7 +256,7 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
     csv::MeterRows rows{
         .name = meter.name_in_file, .utility = meter.utility.value, .units = factors_of(meter)};
     const bool is_said = survey.table && survey.table->shape.unit_column.empty();
-    meters.push_back({std::move(rows), meter.column, is_said ? meter.unit.value : ""});
+    meters.push_back({std::move(rows), meter.column, is_said ? unit_read(meter) : ""});
   }
   csv::ReadingIntake intake{table::intake_options(meters), sink};
   const std::filesystem::path& file = survey.files.front();
@@ -260,38 +267,34 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
   return whole;
 }
 
-/// A clock that is never changed: of a zone with summer time the winter's offset, by the hour.
-std::optional<std::string> fixed_zone(const metering::LocalCalendar& calendar, Instant around) {
-  const auto year = std::chrono::year_month_day{std::chrono::floor<std::chrono::days>(around)};
-  const seconds winter = calendar.standard_offset(year.year());
-  if (winter % std::chrono::hours{1} != seconds{0}) return {};
-  const auto hours = std::chrono::duration_cast<std::chrono::hours>(winter).count();
-  // Etc/GMT-1 is one hour ahead of UTC: POSIX counts westwards.
-  return hours == 0 ? "Etc/GMT"
-                    : fmt::format("Etc/GMT{}{}", hours > 0 ? '-' : '+', std::abs(hours));
-}
-
-/// Stamps in hours that the zone's clock jumps over: the meter's clock stays as it is all year.
+/// A clock that is never changed, if the stamps show it on more than one day.
 Result<void> try_fixed_clock(SurveyedExport& survey, const metering::LocalCalendar& calendar,
                              WholeFile& whole) {
   if (whole.clock.skipped == 0 || !survey.table->shape.timezone.empty()) return {};
-  std::optional<Instant> first;
+  std::optional<metering::TimeSpan> span;
+  double per_hour = 1.0;
   for (const csv::MeterReport& meter : whole.report.meters) {
-    if (meter.span) first = meter.span->begin;
+    if (!meter.span || meter.shown.interval.count() == 0) continue;
+    span = meter.span;
+    per_hour = 3600.0 / static_cast<double>(meter.shown.interval.count());
   }
-  const auto zone = first ? fixed_zone(calendar, *first) : std::nullopt;
-  if (!zone) return {};
-  survey.table->shape.timezone = *zone;
-  auto again = TRY(read_whole(survey, calendar));
-  if (again.report.issues.total >= whole.report.issues.total) {
-    survey.table->shape.timezone.clear();
-    whole = TRY(read_whole(survey, calendar));
+  if (!span) return {};
+  const auto zone = fixed_zone(calendar, span->begin);
+  const auto because = fixed_clock_because(whole.clock, *span, per_hour, calendar);
+  const std::string file = survey.files.front().filename().string();
+  if (!zone || !because) {
+    survey.notes.push_back(fmt::format(
+        "{}: {} row{} in an hour that the clock of {} jumps over {} left out{}.", file,
+        whole.clock.skipped, whole.clock.skipped == 1 ? "" : "s", calendar.zone_name(),
+        whole.clock.skipped == 1 ? "is" : "are",
+        zone ? fmt::format("; if its clock stays on winter time, run again with --clock {}", *zone)
+             : ""));
     return {};
   }
-  survey.clock_because =
-      fmt::format("its clock stays on winter time: it has {} stamps that {} jumps over",
-                  whole.clock.skipped, calendar.zone_name());
-  whole = std::move(again);
+  survey.table->shape.timezone = *zone;
+  survey.clock_because = *because;
+  survey.notes.push_back(fmt::format("{}: read on the clock {}; {}.", file, *zone, *because));
+  whole = TRY(read_whole(survey, calendar));
   return {};
 }
 
@@ -395,6 +398,8 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
       return static_cast<double>(count) / static_cast<double>(watch.values);
     };
     meter.readings = report.readings;
+    meter.values = watch.values;
+    meter.mean_kW = watch.sum_kW / static_cast<double>(watch.values);
     meter.refused = report.refused;
     meter.span = *report.span;
     meter.interval = report.shown.interval;
@@ -416,6 +421,83 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     usable.push_back(std::move(meter));
   }
   survey.meters = std::move(usable);
+}
+
+/// "1.2", "3555"
+std::string amount_text(double value) {
+  const double size = std::abs(value);
+  if (size >= 100.0) return fmt::format("{:.0f}", value);
+  return size >= 1.0 ? fmt::format("{:.1f}", value) : fmt::format("{:.3g}", value);
+}
+
+/// What a meter would use a month, by unit.
+OpenQuestion unit_question(const SurveyedExport& survey, const SurveyedMeter& meter) {
+  constexpr double kMonth_h = 730.0;
+  const double month_kWh = meter.mean_kW * kMonth_h;
+  const double hours = static_cast<double>(meter.interval.count()) / 3600.0;
+  return {.words = fmt::format(
+              "'{}': nothing says the unit of {}; a mean month would be {} kWh if its values are "
+              "kWh, {} kWh if kW, {} kWh if Wh, {} kWh if W.",
+              survey.files.front().string(), csv::in_quotes(meter.name), amount_text(month_kWh),
+              amount_text(month_kWh * hours), amount_text(1e-3 * month_kWh),
+              amount_text(1e-3 * month_kWh * hours)),
+          .option = "--unit",
+          .subject = meter.name,
+          .answers = {"kWh", "kW", "Wh", "W", "MWh", "m3", "therm"}};
+}
+
+void ask_what_is_open(SurveyedExport& survey) {
+  for (const SurveyedMeter& meter : survey.meters) {
+    const bool is_said = !survey.table || !survey.table->shape.unit_column.empty();
+    if (!is_said && meter.unit.value.empty()) {
+      survey.questions.push_back(unit_question(survey, meter));
+    }
+  }
+  if (!survey.table) return;
+  const table::TableGuess& guess = *survey.table;
+  const std::string file = survey.files.front().string();
+  if (guess.is_time_format_open) {
+    survey.questions.push_back(
+        {.words = fmt::format("'{}': its dates may be {}, {}.", file,
+                              table::to_string(guess.shape.time_format), guess.time_format_because),
+         .option = "--dates",
+         .subject = "",
+         .answers = {"dd/mm/yyyy", "mm/dd/yyyy"}});
+  }
+  if (guess.decimal_because.starts_with("guessed")) {
+    survey.questions.push_back(
+        {.words = fmt::format("'{}': the decimal sign may be '{}', {}.", file, guess.shape.decimal,
+                              guess.decimal_because),
+         .option = "--decimal",
+         .subject = "",
+         .answers = {".", ","}});
+  }
+}
+
+/// "NAME=kWh" of this meter.
+std::optional<std::string> unit_of(const SurveyedMeter& meter, const SurveyHints& hints) {
+  for (const std::string& hint : hints.units) {
+    const std::size_t sign = hint.rfind('=');
+    if (sign == std::string::npos) continue;
+    const std::string_view name = std::string_view{hint}.substr(0, sign);
+    const bool is_of_it = name == meter.name || name == meter.column ||
+                          (!meter.name_in_file.empty() && name == meter.name_in_file);
+    if (is_of_it) return hint.substr(sign + 1);
+  }
+  if (!meter.unit.value.empty()) return {};
+  const auto of_all = std::ranges::find_if(
+      hints.units, [](const std::string& hint) { return hint.find('=') == std::string::npos; });
+  return of_all == hints.units.end() ? std::nullopt : std::optional{*of_all};
+}
+
+void apply_units(const SurveyHints& hints, SurveyedExport& survey) {
+  for (SurveyedMeter& meter : survey.meters) {
+    auto unit = unit_of(meter, hints);
+    if (!unit) continue;
+    const bool is_register = meter.is_register;
+    meter = described(meter.name, meter.name_in_file, meter.column, std::move(*unit), "as told");
+    meter.is_register = is_register;
+  }
 }
 
 /// "timestamp_utc"
@@ -451,7 +533,8 @@ Result<std::vector<SurveyedMeter>> meters_of_own(const std::filesystem::path& fi
   return meters_of_rows(file, as_table);
 }
 
-Result<SurveyedExport> described_export(const std::filesystem::path& file) {
+Result<SurveyedExport> described_export(const std::filesystem::path& file,
+                                        const SurveyHints& hints) {
   SurveyedExport survey{.files = {file}};
   const auto begin = TRY(first_bytes(file));
   const auto container = table::guess_container(begin);
@@ -472,7 +555,8 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file) {
     survey.meters = std::move(*meters);
     return survey;
   }
-  auto guess = *container == Container::xlsx ? guess_workbook(file) : guess_text(file, lines);
+  auto guess = *container == Container::xlsx ? guess_workbook(file, hints.table)
+                                             : guess_text(file, lines, hints.table);
   if (!guess) return about(file, guess.error());
   if (guess->shape.meter_column.empty()) {
     survey.meters = meters_of_columns(*guess, file.stem().string());
@@ -489,16 +573,6 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file) {
     survey.notes.push_back(fmt::format("{}: columns not used: {}.", file.filename().string(),
                                        fmt::join(guess->ignored, ", ")));
   }
-  if (guess->decimal_because.starts_with("guessed")) {
-    survey.notes.push_back(fmt::format("{}: the decimal sign is '{}', {}.",
-                                       file.filename().string(), guess->shape.decimal,
-                                       guess->decimal_because));
-  }
-  if (guess->is_time_format_open) {
-    survey.notes.push_back(fmt::format("{}: dates are taken for {}, {}.", file.filename().string(),
-                                       table::to_string(guess->shape.time_format),
-                                       guess->time_format_because));
-  }
   survey.table = std::move(*guess);
   return survey;
 }
@@ -510,9 +584,15 @@ bool is_without_zone(const SurveyedExport& survey) {
 }  // namespace
 
 Result<SurveyedExport> survey_export(const std::filesystem::path& file,
-                                     const std::optional<metering::LocalCalendar>& calendar) {
-  auto survey = described_export(file);
+                                     const std::optional<metering::LocalCalendar>& calendar,
+                                     const SurveyHints& hints) {
+  auto survey = described_export(file, hints);
   if (!survey) return survey;
+  apply_units(hints, *survey);
+  if (survey->table && !hints.clock.empty()) {
+    survey->table->shape.timezone = hints.clock;
+    survey->clock_because = "as told";
+  }
   if (is_without_zone(*survey) && !calendar) {
     return failure(ErrorCode::invalid_value,
                    fmt::format("'{}': its times do not say their offset from UTC; run again with "
@@ -534,6 +614,12 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   }
   TRY(require_sound(*survey, *whole));
   take_results(*survey, *whole, *clock);
+  if (hints.stamps) {
+    for (SurveyedMeter& meter : survey->meters) {
+      meter.stamps = Guess<csv::Stamps>{*hints.stamps, "as told"};
+    }
+  }
+  ask_what_is_open(*survey);
   if (survey->meters.empty()) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("'{}': no meter has a value that can be used", file.string()));
@@ -547,7 +633,7 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
 }
 
 Result<bool> needs_timezone(const std::filesystem::path& file) {
-  return described_export(file).map(is_without_zone);
+  return described_export(file, {}).map(is_without_zone);
 }
 
 }  // namespace recald::daemon

@@ -12,6 +12,7 @@
 #include "core/metering/reading.hpp"
 #include "core/result.hpp"
 #include "daemon/site/setup/meter_sums.hpp"
+#include "daemon/site/setup/survey_hints.hpp"
 
 namespace recald::daemon {
 
@@ -37,17 +38,20 @@ struct SurveyedMeter {
   double frozen_share = 0.0;  ///< In runs of equal values longer than a meter is believed to have.
   double negative_share = 0.0;
   std::uint64_t readings = 0;
+  std::uint64_t values = 0;  ///< Of these, not blank.
   std::uint64_t refused = 0;
+  double mean_kW = 0.0;  ///< Of the values; while the unit is unknown as if it were kWh.
   metering::TimeSpan span{};
   SampledReadings samples;
 };
 
 struct SurveyedExport {
-  std::vector<std::filesystem::path> files;  ///< Several: in order of time.
+  std::vector<std::filesystem::path> files;  ///< Several: the later counts where they overlap.
   std::optional<table::TableGuess> table;    ///< None: recald's own CSV.
   std::vector<SurveyedMeter> meters;
-  std::vector<std::string> notes;  ///< A sentence each: what is undecided, or left out.
-  std::string clock_because;       ///< Why the table has a zone of its own; empty: it has none.
+  std::vector<std::string> notes;   ///< A sentence each: what is undecided, or left out.
+  std::vector<OpenQuestion> questions;  ///< What has to be known before it can be read.
+  std::string clock_because;        ///< Why the table has a zone of its own; empty: it has none.
   std::optional<std::chrono::seconds> utc_offset;  ///< Of its first stamp, if stamps say theirs.
 };
 
@@ -57,7 +61,8 @@ struct SurveyedExport {
 /// @return a sentence that names the file: it cannot be understood, its stamps need a zone, they
 ///         are out of order, too many of its rows would be refused.
 [[nodiscard]] Result<SurveyedExport> survey_export(
-    const std::filesystem::path& file, const std::optional<metering::LocalCalendar>& calendar);
+    const std::filesystem::path& file, const std::optional<metering::LocalCalendar>& calendar,
+    const SurveyHints& hints = {});
 
 /// Whether its stamps say neither their offset from UTC nor their zone. Reads the first rows, of a
 /// table with a column of meters all.

@@ -162,7 +162,10 @@ INSTANTIATE_TEST_SUITE_P(
                                   {"calibrate", "SITE", "--model", "hourly", "--sampler", "dram",
                                    "--draws", "1400", "--burn-in", "400", "--chains", "2",
                                    "--design-runs", "50", "--out", "OUT"}},
-                      LongCommand{"drift", {"drift", "SITE", "--learn", "6", "--out", "OUT"}}),
+                      LongCommand{"drift", {"drift", "SITE", "--learn", "6", "--out", "OUT"}},
+                      LongCommand{"diagnose", {"diagnose", "SITE", "--out", "OUT"}},
+                      LongCommand{"ecm_since",
+                                  {"ecm", "SITE", "--since", "2021-10-01", "--out", "OUT"}}),
     [](const auto& made) { return std::string{made.param.name}; });
 
 // More than a pipe's buffer of lines, and a reader that has gone: `recald replay … | head`.

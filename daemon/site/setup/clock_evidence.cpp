@@ -1,0 +1,63 @@
+#include "daemon/site/setup/clock_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace recald::daemon {
+namespace {
+
+using metering::Instant;
+using std::chrono::seconds;
+
+/// Days on which the clock is put forward.
+int spring_changes(const metering::TimeSpan& span, const metering::LocalCalendar& calendar) {
+  int changes = 0;
+  constexpr std::chrono::hours kStep{12};
+  for (Instant t = span.begin; t + kStep <= span.end; t += kStep) {
+    if (calendar.utc_offset(t + kStep) > calendar.utc_offset(t)) ++changes;
+  }
+  return changes;
+}
+
+}  // namespace
+
+std::optional<std::string> fixed_zone(const metering::LocalCalendar& calendar, Instant around) {
+  const auto year = std::chrono::year_month_day{std::chrono::floor<std::chrono::days>(around)};
+  const seconds winter = calendar.standard_offset(year.year());
+  if (winter % std::chrono::hours{1} != seconds{0}) return {};
+  const auto hours = std::chrono::duration_cast<std::chrono::hours>(winter).count();
+  // Etc/GMT-1 is one hour ahead of UTC: POSIX counts westwards.
+  return hours == 0 ? "Etc/GMT"
+                    : fmt::format("Etc/GMT{}{}", hours > 0 ? '-' : '+', std::abs(hours));
+}
+
+std::optional<std::string> fixed_clock_because(const table::ClockFacts& facts,
+                                               const metering::TimeSpan& span, double per_hour,
+                                               const metering::LocalCalendar& calendar) {
+  constexpr double kMost = 0.75;  // of an hour's stamps
+  int springs = 0;
+  int autumns = 0;
+  const metering::Day* spring = nullptr;
+  const metering::Day* autumn = nullptr;
+  for (const auto& [day, change] : facts.changes) {
+    if (change.second > 0) return {};
+    if (static_cast<double>(change.skipped) >= kMost * per_hour) {
+      ++springs;
+      spring = &day;
+    }
+    if (static_cast<double>(change.first) >= kMost * per_hour) {
+      ++autumns;
+      autumn = &day;
+    }
+  }
+  if (springs == 0 || autumns == 0 || springs < spring_changes(span, calendar)) return {};
+  return fmt::format(
+      "it has values in the hour of {} that {} jumps over, and no hour twice on {}: its clock "
+      "stays on winter time",
+      metering::to_string(*spring), calendar.zone_name(), metering::to_string(*autumn));
+}
+
+}  // namespace recald::daemon

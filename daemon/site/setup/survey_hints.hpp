@@ -1,0 +1,32 @@
+/// What an export's owner says of it, and what has to be asked where he does not.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adapters/csv/readings_csv.hpp"
+#include "adapters/table/sniff.hpp"
+
+namespace recald::daemon {
+
+/// Nothing of this is guessed.
+struct SurveyHints {
+  table::TableHints table;
+  /// "kWh" for the meters whose unit nothing says, or "NAME=kWh" for one.
+  std::vector<std::string> units;
+  std::optional<csv::Stamps> stamps;
+  std::optional<std::chrono::seconds> interval;
+  std::string clock;  ///< IANA zone of the stamps; empty: the building's, or as they show.
+};
+
+/// What no evidence settles.
+struct OpenQuestion {
+  std::string words;                 ///< A sentence: what, where, and how it looks.
+  std::string option;                ///< That answers it: "--unit".
+  std::string subject;               ///< Before "=" in its value; empty: none.
+  std::vector<std::string> answers;  ///< Likely ones.
+};
+
+}  // namespace recald::daemon
