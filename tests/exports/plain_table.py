@@ -362,7 +362,8 @@ def undecided_table(d):
             if wall.day <= 12 and wall.day != wall.month:
                 break
             begin = clock.midnight((wall + datetime.timedelta(days=1)).date())
-        end = clock.midnight((clock.local(begin) + datetime.timedelta(hours=26)).date())
+        # No stamp on a second date, as the one that follows would tell days from months.
+        end = clock.midnight((clock.local(begin) + datetime.timedelta(hours=26)).date()) - 900
         right = "dd/mm/yyyy"
         answers = {"--date-order": right, "--time-format": right, "--time_format": right}
     else:
