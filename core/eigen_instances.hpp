@@ -1,5 +1,5 @@
-/// Eigen's decompositions and its kernel of matrix products: of a release those that the linker is to
-/// keep; for what runs with Eigen's assertions (the everyday build, core's tests) compiled once
+/// Eigen's decompositions and its kernel of matrix products: of a release those that the linker is
+/// to keep; for what runs with Eigen's assertions (the everyday build, core's tests) compiled once
 /// instead of in every source that uses them.
 ///
 /// Part of the precompiled headers there (CMakeLists.txt). A source that is compiled without them

@@ -42,8 +42,8 @@ struct IntakeMeter {
   double kW_per_unit = 0.0;
   std::vector<HeadRow> head;
   std::vector<metering::RegisterSample> samples;
-  std::optional<metering::Instant> last;    ///< Start of the previous row.
-  std::optional<metering::Instant> newest;  ///< Latest start of this file …
+  std::optional<metering::Instant> last;           ///< Start of the previous row.
+  std::optional<metering::Instant> newest;         ///< Latest start of this file …
   std::optional<metering::Instant> newest_of_all;  ///< … and of those before.
   std::optional<metering::Instant> earliest;
   std::uint64_t readings_before = 0;  ///< In earlier files.

@@ -27,8 +27,8 @@ struct ExportDraft {
 /// @param folder    Where the site file will stand.
 /// @return the draft, or the exit code after saying what is wrong.
 [[nodiscard]] tl::expected<ExportDraft, int> draft_aloud(
-    const std::vector<std::filesystem::path>& files, const std::string& timezone,
-    SurveyHints hints, const std::filesystem::path& folder, const Console& console);
+    const std::vector<std::filesystem::path>& files, const std::string& timezone, SurveyHints hints,
+    const std::filesystem::path& folder, const Console& console);
 
 /// A line a meter, then what its owner should look at.
 /// @param look     Says so.

@@ -49,9 +49,9 @@ struct SurveyedExport {
   std::vector<std::filesystem::path> files;  ///< Several: the later counts where they overlap.
   std::optional<table::TableGuess> table;    ///< None: recald's own CSV.
   std::vector<SurveyedMeter> meters;
-  std::vector<std::string> notes;   ///< A sentence each: what is undecided, or left out.
+  std::vector<std::string> notes;       ///< A sentence each: what is undecided, or left out.
   std::vector<OpenQuestion> questions;  ///< What has to be known before it can be read.
-  std::string clock_because;        ///< Why the table has a zone of its own; empty: it has none.
+  std::string clock_because;  ///< Why the table has a zone of its own; empty: it has none.
   std::optional<std::chrono::seconds> utc_offset;  ///< Of its first stamp, if stamps say theirs.
 };
 
