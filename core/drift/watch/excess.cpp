@@ -57,6 +57,33 @@ double added_kWh(std::span<const WatchedDay> days, const DailyReference& before,
   return kHoursADay * excess_kW * (1.0 + share);
 }
 
+/// (measured - expected) / expected.
+double relative(std::span<const WatchedDay> days, const DailyReference& reference) {
+  double measured_kW = 0.0;
+  double expected_kW = 0.0;
+  for (const WatchedDay& day : days) {
+    measured_kW += day.measured_kW;
+    expected_kW += reference.expect(day).mean_kW;
+  }
+  return measured_kW / expected_kW - 1.0;
+}
+
+/// What a reference learns from: days from one on, and what was known before them.
+struct Baseline {
+  metering::Day from;
+  Coefficients known;
+};
+
+/// Whether a change is one against what the meter did before an earlier notice: that notice was
+/// none, or what it told of has gone. Then the days before this one are nearer to it than those
+/// since.
+bool holds_again(const DailyReference& origin, std::span<const WatchedDay> before,
+                 std::span<const WatchedDay> since) {
+  constexpr std::size_t kSeason = 90;
+  const auto lately = before.last(std::min(kSeason, before.size()));
+  return std::abs(relative(lately, origin)) < 0.5 * std::abs(relative(since, origin));
+}
+
 /// What is added to the last 365 days, whichever of them came before the change.
 std::optional<double> added_a_year_kWh(std::span<const WatchedDay> days,
                                        const DailyReference& before, const DailyReference& since) {
@@ -98,26 +125,32 @@ std::vector<std::optional<Excess>> excesses_of(std::span<const WatchedDay> days,
                                                std::span<const NoticedChange> notices) {
   if (days.empty()) return std::vector<std::optional<Excess>>(notices.size());
   const metering::Day day_after{std::chrono::sys_days{days.back().date} + std::chrono::days{1}};
-  metering::Day from = days.front().date;
-  const double scale_kW = mean_kW(measured_between(days, from, day_after));
-  Coefficients known = DailyReference::vague();
+  const double scale_kW = mean_kW(measured_between(days, days.front().date, day_after));
+  Baseline now{days.front().date, DailyReference::vague()};
+  Baseline before_last = now;
+  std::optional<DailyReference> last;
   const Grouped grouped = group(notices);
   std::vector<std::optional<Excess>> of_changes;
   for (std::size_t i = 0; i < grouped.changes.size(); ++i) {
     const metering::Day since = grouped.changes[i].since;
     const bool is_last = i + 1 == grouped.changes.size();
     const metering::Day end = is_last ? day_after : grouped.changes[i + 1].since;
-    const auto days_before = measured_between(days, from, since);
+    auto days_before = measured_between(days, now.from, since);
     const auto days_since = measured_between(days, since, end);
     if (scale_kW <= 0.0 || days_before.empty() || days_since.empty()) {
       of_changes.emplace_back();
       continue;
     }
-    const DailyReference before{days_before, scale_kW, known};
-    known = before.after_a_change(
-        std::min(1.0, kCarriedDays / static_cast<double>(days_before.size())), kFactorSd);
-    from = since;
-    const DailyReference after{days_since, scale_kW, known};
+    if (last && holds_again(*last, days_before, days_since)) {
+      now = before_last;
+      days_before = measured_between(days, now.from, since);
+    }
+    const DailyReference before{days_before, scale_kW, now.known};
+    last = before;
+    before_last = now;
+    const double carried = kCarriedDays / static_cast<double>(days_before.size());
+    now = {since, before.after_a_change(std::min(1.0, carried), kFactorSd)};
+    const DailyReference after{days_since, scale_kW, now.known};
     of_changes.push_back(
         Excess{.since = since,
                .until = days_since.back().date,

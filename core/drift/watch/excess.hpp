@@ -31,7 +31,9 @@ struct Excess {
 /// days are of one change, and each has the whole of it. A reference learnt from the days before
 /// the change, and from none since, says what they would have been. What a year adds is the
 /// difference between that reference and one that learns from the days since: of a few days hardly
-/// more than a factor of the forecast's own season, of a year that year's.
+/// more than a factor of the forecast's own season, of a year that year's. A change the other way
+/// is against the days since the one before, unless those were as before it: a false alarm, or a
+/// fault that came and went.
 /// @param days  In order of time; unmeasured ones too.
 /// @return one for each notice; nothing where no day is measured before it or none since.
 [[nodiscard]] std::vector<std::optional<Excess>> excesses_of(
