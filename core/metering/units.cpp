@@ -122,6 +122,18 @@ constexpr std::array kSynonyms{
     Synonym{"watthour", "wh"},
     Synonym{"kilowatthour", "kwh"},
     Synonym{"megawatthour", "mwh"},
+    Synonym{"kwstd", "kwh"},
+    Synonym{"wattstunde", "wh"},
+    Synonym{"wattstunden", "wh"},
+    Synonym{"wattheure", "wh"},
+    Synonym{"megawattstunden", "mwh"},
+    Synonym{"kubikmeter", "m3"},
+    Synonym{"metrecube", "m3"},
+    Synonym{"metrocubo", "m3"},
+    Synonym{"kubiekemeter", "m3"},
+    Synonym{"gigajoule", "gj"},
+    Synonym{"megajoule", "mj"},
+    Synonym{"kilojoule", "kj"},
 };
 
 constexpr std::array<std::string_view, 9> kFlows{"l/s", "l/h", "l/min", "gpm",   "m3/s",
@@ -152,7 +164,23 @@ std::string plain(std::string_view text) {
   return out;
 }
 
+/// A kilowatt hour in other languages, normalised by `plain`: they begin alike and end in an hour.
+bool is_kilowatt_hour(std::string_view spelling) {
+  constexpr std::array<std::string_view, 4> kKilowatts{"kilowat", "kilovat", "chilowat", "quilowat"};
+  constexpr std::array<std::string_view, 8> kHours{"stunde", "heure", "uur",    "time",
+                                                   "timm",   "tunti", "godzin", "ora"};
+  const auto begins = [&](std::string_view kilowatt) {
+    return spelling.substr(0, kilowatt.size()) == kilowatt;
+  };
+  const auto has = [&](std::string_view hour) {
+    return spelling.find(hour) != std::string_view::npos;
+  };
+  return std::any_of(kKilowatts.begin(), kKilowatts.end(), begins) &&
+         std::any_of(kHours.begin(), kHours.end(), has);
+}
+
 const KnownUnit* find_known(std::string_view spelling) {
+  if (is_kilowatt_hour(spelling)) spelling = "kwh";
   for (const Synonym& synonym : kSynonyms) {
     if (synonym.written == spelling) spelling = synonym.known;
   }
