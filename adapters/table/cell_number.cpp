@@ -1,28 +1,24 @@
 #include "adapters/table/cell_number.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "adapters/csv/fields.hpp"
-#include "core/text/ascii.hpp"
+#include "adapters/table/words.hpp"
 
 namespace recald::table {
 namespace {
-
-constexpr std::string_view kNoBreakSpace = "\xC2\xA0";
-constexpr std::string_view kNarrowNoBreakSpace = "\xE2\x80\xAF";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Bytes of a thousands separator at the front of `text`; 0: there is none.
 std::size_t group_sign(std::string_view text, char decimal) {
-  if (text.empty()) return 0;
   if (text.front() == ' ' || text.front() == '\'') return 1;
   if (text.front() == (decimal == ',' ? '.' : ',')) return 1;
-  for (const std::string_view space : {kNoBreakSpace, kNarrowNoBreakSpace}) {
-    if (text.substr(0, space.size()) == space) return space.size();
-  }
-  return 0;
+  if (static_cast<unsigned char>(text.front()) < 0x80) return 0;
+  std::string_view rest = text;
+  const std::uint32_t point = take_character(rest);
+  const bool is_sign = is_wide_blank(point) || point == 0x2019;
+  return is_sign ? text.size() - rest.size() : 0;
 }
 
 /// The whole part without thousands separators; nothing if they are in the wrong places.
@@ -53,20 +49,21 @@ std::optional<std::string> without_groups(std::string_view whole, char decimal) 
 
 bool is_blank(std::string_view cell) {
   if (cell.empty()) return true;
-  if (cell.size() > 8) return false;
-  std::string word;
-  for (const char c : cell) {
-    word += to_lower(c);
-  }
-  constexpr std::array<std::string_view, 12> kWords{
-      "-", "--", "na", "n/a", "#n/a", "nan", "null", "none", "nil", "no data", "missing", "---"};
-  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+  const bool has_sign = cell.front() == '-' || cell.front() == '+' || cell.front() == '.';
+  const char first = has_sign && cell.size() > 1 ? cell[1] : cell.front();
+  return !is_digit(first) && is_word_for_nothing(cell);
 }
 
 std::optional<double> parse_cell(std::string_view cell, char decimal) {
   double value = 0.0;
   if (decimal == '.' && !cell.empty() && csv::parse_plain_decimal(cell, value) == cell.size()) {
     return value;
+  }
+  constexpr std::string_view kMinus = "\xE2\x88\x92";
+  if (cell.size() > kMinus.size() && cell.substr(0, kMinus.size()) == kMinus &&
+      is_digit(cell[kMinus.size()])) {
+    const auto positive = parse_cell(cell.substr(kMinus.size()), decimal);
+    return positive ? std::optional{-*positive} : std::nullopt;
   }
   const std::size_t sign = !cell.empty() && (cell.front() == '-' || cell.front() == '+') ? 1 : 0;
   std::size_t end = cell.find(decimal, sign);
@@ -87,12 +84,40 @@ std::optional<double> parse_cell(std::string_view cell, char decimal) {
 }
 
 std::string cell_problem(std::string_view cell, char decimal) {
-  return csv::in_quotes(cell) + " is no number with a decimal " +
-         (decimal == ',' ? "comma" : "point") + "; leave the cell blank where nothing was measured";
+  const char other = decimal == ',' ? '.' : ',';
+  const auto words = [](char sign) { return sign == ',' ? "comma" : "point"; };
+  std::string problem = csv::in_quotes(cell) + " is no number with a decimal " + words(decimal);
+  if (parse_cell(cell, other)) return problem + "; it is one with a decimal " + words(other);
+  return problem + "; leave the cell blank where nothing was measured";
 }
 
 DecimalSigns possible_decimal_signs(std::string_view cell) {
   return {parse_cell(cell, '.').has_value(), parse_cell(cell, ',').has_value()};
+}
+
+NumberAndUnit split_number(std::string_view cell) {
+  std::string_view rest = cell;
+  std::size_t end = 0;  // behind the last figure
+  while (!rest.empty()) {
+    const std::size_t at = cell.size() - rest.size();
+    const char c = rest.front();
+    if (is_digit(c)) end = at + 1;
+    const bool is_exponent = (c == 'e' || c == 'E') && end == at && at > 0 && rest.size() > 1 &&
+                             (is_digit(rest[1]) || rest[1] == '-' || rest[1] == '+');
+    const std::uint32_t point = take_character(rest);
+    const bool is_sign = point == '.' || point == ',' || point == ' ' || point == '\'' ||
+                         point == 0x2019 || is_wide_blank(point);
+    const bool is_front_sign = at == 0 && (point == '-' || point == '+');
+    const bool is_after_exponent =
+        at > 0 && (cell[at - 1] == 'e' || cell[at - 1] == 'E') && (point == '-' || point == '+');
+    if (!is_digit(c) && !is_sign && !is_front_sign && !is_exponent && !is_after_exponent) break;
+  }
+  std::string_view unit = cell.substr(end);
+  for (std::string_view left = unit; !left.empty(); unit = left) {
+    const std::uint32_t point = take_character(left);
+    if (point != ' ' && point != '.' && !is_wide_blank(point)) break;
+  }
+  return {cell.substr(0, end), csv::trimmed(unit)};
 }
 
 }  // namespace recald::table

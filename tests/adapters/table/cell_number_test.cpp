@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <vector>
+
 namespace recald::table::cell_number_test {
 namespace {
 
@@ -42,6 +46,47 @@ TEST(CellNumber, BlanksAreWordsForNothing) {
     EXPECT_TRUE(is_blank(cell)) << cell;
   }
   for (const char* cell : {"0", "-1", "nano", "off"}) EXPECT_FALSE(is_blank(cell)) << cell;
+}
+
+// Any number, any sign of thousands, any unit behind it.
+TEST(CellNumber, ComesBackFromAnyForm) {
+  const std::vector<std::string> groups{"", " ", "\xC2\xA0", "\xE2\x80\xAF", "'", "\xE2\x80\x99"};
+  const std::vector<std::string> units{"", "kWh", "W", "m\xC2\xB3", "kilowatt hours"};
+  for (const char decimal : {'.', ','}) {
+    for (const std::string& group : groups) {
+      for (const double value : {0.0, 0.125, 7.5, 987.0, 1234.5, 1234567.25, -1234.5}) {
+        std::string whole = std::to_string(static_cast<long>(std::abs(value)));
+        for (int at = static_cast<int>(whole.size()) - 3; at > 0; at -= 3) {
+          whole.insert(static_cast<std::size_t>(at), group);
+        }
+        const auto thousandths = static_cast<int>(std::lround(std::abs(value) * 1000.0)) % 1000;
+        std::string text = (value < 0.0 ? "-" : "") + whole;
+        if (thousandths > 0) text += decimal + std::to_string(1000 + thousandths).substr(1);
+        EXPECT_EQ(parse_cell(text, decimal), value) << text;
+        for (const std::string& unit : units) {
+          for (const std::string blank : {" ", "", "\xC2\xA0"}) {
+            const std::string cell = unit.empty() ? text : text + blank + unit;
+            EXPECT_EQ(parse_cell(split_number(cell).number, decimal), value) << cell;
+            EXPECT_EQ(split_number(cell).unit, unit) << cell;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(parse_cell("\xE2\x88\x92"
+                       "12.5",
+                       '.'),
+            -12.5);
+  EXPECT_EQ(split_number("1.5e-3 kWh").number, "1.5e-3");
+  EXPECT_EQ(split_number("kWh").number, "");
+}
+
+TEST(CellNumber, ARefusalNamesTheSignThatWouldDo) {
+  EXPECT_EQ(cell_problem("1.234,5", '.'),
+            "'1.234,5' is no number with a decimal point; it is one with a decimal comma");
+  EXPECT_EQ(cell_problem("many", '.'),
+            "'many' is no number with a decimal point; leave the cell blank where nothing was "
+            "measured");
 }
 
 TEST(CellNumber, AThousandMayBeAThousandth) {
