@@ -18,7 +18,7 @@ enum class TimeFormat : std::uint8_t {
   day_first,    ///< 31/03/2024 14:15, 31.3.24 2:15 PM, 31-Mar-2024
   month_first,  ///< 03/31/2024 14:15, Mar 31, 2024
   excel,        ///< Days since the end of 1899, as spreadsheets count them.
-  unix,         ///< Seconds, or milliseconds, since 1970 in UTC.
+  unix,         ///< Seconds, or ms, µs or ns by their size, since 1970 in UTC.
 };
 
 inline constexpr std::array<std::string_view, 5> kTimeFormats{"yyyy-mm-dd", "dd/mm/yyyy",
@@ -31,13 +31,34 @@ inline constexpr std::array<std::string_view, 5> kTimeFormats{"yyyy-mm-dd", "dd/
 struct WrittenTime {
   metering::Instant clock;  ///< As if the clock showed UTC.
   std::optional<std::chrono::seconds> utc_offset;
-  bool has_time = true;  ///< False: only a date.
+  bool has_time = true;        ///< False: only a date.
+  bool is_range = false;       ///< It was "from – to"; the time is the first.
+  bool is_zone_named = false;  ///< The offset is that of letters such as EST.
 };
 
-/// @return the time, or malformed; out_of_range outside the known years.
+/// Besides what the formats show, there may be: a day of the week in front; months and days in the
+/// languages of `words.hpp`; blanks of any width and marks that are not seen; "a. m."; "14h15";
+/// letters of a zone, "EDT" or "MESZ", whose offset counts; "from – to" with a dash, a slash or a
+/// word between, of which the first stamp counts. "2025-09-01 00:00-01:00" is a stamp with an
+/// offset; behind dates that are not written year first such an end is the end of a range.
+/// @return the time, or malformed, whose message names letters that are no known zone, or the order
+///         of parts that would do; out_of_range outside the known years.
 [[nodiscard]] Result<WrittenTime> parse_stamp(std::string_view text, TimeFormat format);
 
-/// A time of day on its own: "14:15", "2:15:00 PM", "24:00".
+/// Whether `parse_stamp` would have a time.
+[[nodiscard]] bool is_stamp(std::string_view text, TimeFormat format);
+
+/// A time of day on its own.
+struct WrittenClock {
+  std::chrono::seconds time;
+  std::optional<std::chrono::seconds> utc_offset;
+  bool is_range = false;       ///< "00:00 - 00:15".
+  bool is_zone_named = false;  ///< As in `WrittenTime`.
+  bool is_hour = false;        ///< Only an hour, "7", or "7 - 8".
+};
+[[nodiscard]] std::optional<WrittenClock> parse_clock(std::string_view text);
+
+/// "14:15", "2:15:00 PM", "24:00", "00:00 - 00:15"; no hour alone, nothing with an offset.
 [[nodiscard]] std::optional<std::chrono::seconds> parse_time_of_day(std::string_view text);
 
 /// Converts successive times of one clock to instants. If the clock shows an hour twice, order
