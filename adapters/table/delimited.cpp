@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <memory>
 
 #include "adapters/csv/fields.hpp"
+#include "adapters/table/words.hpp"
 
 namespace recald::table {
 namespace {
@@ -35,6 +37,24 @@ std::size_t letter_bytes(unsigned char first) {
   if (first >= 0xE0 && first < 0xF0) return 3;
   if (first >= 0xF0 && first < 0xF5) return 4;
   return 0;
+}
+
+/// Without blanks of any width and unseen marks at both ends.
+std::string_view without_wide_blanks(std::string_view cell) {
+  const auto is_edge = [](std::uint32_t point) {
+    return point == ' ' || is_wide_blank(point) || is_unseen(point);
+  };
+  for (std::string_view rest = cell; !rest.empty(); cell = rest) {
+    if (!is_edge(take_character(rest))) break;
+  }
+  for (;;) {
+    std::size_t begin = cell.size();  // of the last character
+    while (begin > 0 && (static_cast<unsigned char>(cell[begin - 1]) & 0xC0u) == 0x80u) --begin;
+    if (begin == 0) return cell;
+    std::string_view last = cell.substr(begin - 1);
+    if (!is_edge(take_character(last))) return cell;
+    cell = cell.substr(0, begin - 1);
+  }
 }
 
 bool is_utf8(std::string_view text) {
@@ -77,18 +97,28 @@ class Recoder {
       if (begin_.size() < 2) return;
       const auto first = static_cast<unsigned char>(begin_[0]);
       const auto second = static_cast<unsigned char>(begin_[1]);
+      const bool has_mark = (first == 0xFF && second == 0xFE) || (first == 0xFE && second == 0xFF);
+      // Without a mark: a text begins with a letter, of which one byte is zero.
       kind_ = first == 0xFF && second == 0xFE   ? Kind::little
               : first == 0xFE && second == 0xFF ? Kind::big
+              : second == 0                     ? Kind::little
+              : first == 0                      ? Kind::big
                                                 : Kind::plain;
       const std::string whole = std::move(begin_);
-      take(kind_ == Kind::plain ? std::string_view{whole} : std::string_view{whole}.substr(2));
+      take(std::string_view{whole}.substr(has_mark ? 2 : 0));
       return;
     }
     if (kind_ == Kind::plain) {
       out_ += piece;
-      return;
+    } else {
+      for (const char c : piece) take_byte(static_cast<unsigned char>(c));
     }
-    for (const char c : piece) take_byte(static_cast<unsigned char>(c));
+    if (!are_ends_known_ && !out_.empty()) {
+      are_ends_known_ = true;
+      const std::size_t at = out_.find('\r');
+      has_old_ends_ = at < out_.size() - 1 && out_.find('\n') == std::string::npos;
+    }
+    if (has_old_ends_) std::replace(out_.begin(), out_.end(), '\r', '\n');
   }
 
   void take_byte(unsigned char byte) {
@@ -118,37 +148,11 @@ class Recoder {
   std::size_t out_at_ = 0;
   std::optional<unsigned char> half_;
   std::optional<std::uint32_t> high_;
+  bool are_ends_known_ = false;
+  bool has_old_ends_ = false;  ///< Lines end in a carriage return alone.
 };
 
-class DelimitedRows final : public RowSource {
- public:
-  DelimitedRows(csv::ByteSource bytes, char separator)
-      : lines_{as_utf8(std::move(bytes))}, separator_{separator} {}
-
-  bool next(TableRow& row) override {
-    csv::Line line{};
-    if (!lines_.next(line)) return false;
-    row.number = line.number;
-    row.text = line.text;
-    row.is_terminated = line.terminated;
-    row.problem = {};
-    row.cells.clear();
-    if (line.too_long) {
-      row.problem = "longer than 64 KiB";
-    } else if (!split_cells(line.text, separator_, row.cells, unquoted_)) {
-      row.cells.clear();
-      row.problem = "a quote is not closed, or text follows a closing quote";
-    }
-    return true;
-  }
-
-  [[nodiscard]] const std::optional<Error>& error() const override { return lines_.error(); }
-
- private:
-  csv::LineReader lines_;
-  char separator_;
-  std::string unquoted_;
-};
+enum class Split : std::uint8_t { whole, open, bad };
 
 /// Reads a quoted cell after its opening quote. @return false: the quote is never closed
 bool take_quoted(std::string_view& line, std::string& unquoted) {
@@ -163,30 +167,146 @@ bool take_quoted(std::string_view& line, std::string& unquoted) {
   }
 }
 
-}  // namespace
+/// A cell without blanks of any width at its ends, and out of the formula that keeps a spreadsheet
+/// from reading a number: ="0123".
+std::string_view cleaned(std::string_view cell) {
+  cell = csv::trimmed(cell);
+  const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+  if (cell.empty()) return cell;
+  if (!is_ascii(cell.front()) || !is_ascii(cell.back())) cell = without_wide_blanks(cell);
+  if (cell.size() >= 3 && cell.front() == '=' && cell[1] == '"' && cell.back() == '"') {
+    return cell.substr(2, cell.size() - 3);
+  }
+  return cell;
+}
 
-bool split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells,
-                 std::string& unquoted) {
+Split cut_line(std::string_view line, char separator, std::vector<std::string_view>& cells,
+               std::string& unquoted) {
   // Contents are never longer than the line, so reserving once keeps earlier cells valid.
   unquoted.clear();
   unquoted.reserve(line.size());
   while (cells.size() < kCellsMax) {
+    while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
     if (!line.empty() && line.front() == '"') {
       line.remove_prefix(1);
       const std::size_t begin = unquoted.size();
-      if (!take_quoted(line, unquoted)) return false;
-      cells.push_back(csv::trimmed(std::string_view{unquoted}.substr(begin)));
-      if (line.empty()) return true;
-      if (line.front() != separator) return false;
+      if (!take_quoted(line, unquoted)) return Split::open;
+      cells.push_back(cleaned(std::string_view{unquoted}.substr(begin)));
+      while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
+      if (line.empty()) return Split::whole;
+      if (line.front() != separator) return Split::bad;
       line.remove_prefix(1);
       continue;
     }
     const std::size_t length = std::min(line.find(separator), line.size());
-    cells.push_back(csv::trimmed(line.substr(0, length)));
-    if (length == line.size()) return true;
+    cells.push_back(cleaned(line.substr(0, length)));
+    if (length == line.size()) return Split::whole;
     line.remove_prefix(length + 1);
   }
-  return true;
+  return Split::whole;
+}
+
+/// Rows of text. A row with a line break inside quotes is put together from its lines, within
+/// bounds: a quote that is never closed must cost no more than its own line.
+class DelimitedRows final : public RowSource {
+ public:
+  DelimitedRows(csv::ByteSource bytes, char separator)
+      : lines_{as_utf8(std::move(bytes))}, separator_{separator} {}
+
+  bool next(TableRow& row) override {
+    csv::Line line{};
+    if (!next_line(line)) return false;
+    row.number = line.number;
+    row.text = line.text;
+    row.is_terminated = line.terminated;
+    row.problem = {};
+    if (line.too_long) {
+      row.cells.clear();
+      row.problem = "longer than 64 KiB";
+      return true;
+    }
+    Split split = cut(line.text, row.cells);
+    if (split == Split::open) {
+      const bool is_joined = join_lines(line);
+      row.text = is_joined ? std::string_view{joined_} : line.text;
+      if (is_joined) row.is_terminated = is_joined_terminated_;
+      if (is_joined) split = cut(joined_, row.cells);
+    }
+    if (split == Split::whole) return true;
+    row.cells.clear();
+    row.problem = "a quote is not closed, or text follows a closing quote";
+    return true;
+  }
+
+  [[nodiscard]] const std::optional<Error>& error() const override { return lines_.error(); }
+
+ private:
+  static constexpr std::size_t kJoinedMax = 20;  // lines of one row
+
+  struct WaitingLine {
+    std::string text;
+    csv::Line line;
+  };
+
+  Split cut(std::string_view text, std::vector<std::string_view>& cells) {
+    cells.clear();
+    return cut_line(text, separator_, cells, unquoted_);
+  }
+
+  bool next_line(csv::Line& line) {
+    if (waiting_.empty()) return lines_.next(line);
+    shown_ = std::move(waiting_.front());
+    waiting_.pop_front();
+    line = shown_.line;
+    line.text = shown_.text;
+    return true;
+  }
+
+  /// Adds lines to `joined_` until its quotes are closed. @return false: they are not, and all
+  /// lines but the first wait for the next call
+  bool join_lines(csv::Line& first) {
+    joined_ = first.text;
+    first_text_ = first.text;
+    first.text = first_text_;
+    std::vector<std::string_view> cells;
+    std::string unquoted;
+    for (std::size_t used = 0; used < kJoinedMax && joined_.size() < csv::kLineMax; ++used) {
+      if (used == waiting_.size()) {
+        csv::Line line{};
+        if (!lines_.next(line)) return false;
+        waiting_.push_back({std::string{line.text}, line});
+      }
+      const WaitingLine& more = waiting_[used];
+      if (more.line.too_long) return false;
+      joined_ += ' ';
+      joined_ += more.text;
+      if (more.text.find('"') == std::string::npos) continue;
+      cells.clear();
+      const Split split = cut_line(joined_, separator_, cells, unquoted);
+      if (split == Split::bad) return false;
+      if (split == Split::open) continue;
+      is_joined_terminated_ = more.line.terminated;
+      waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(used) + 1);
+      return true;
+    }
+    return false;
+  }
+
+  csv::LineReader lines_;
+  char separator_;
+  std::string unquoted_;
+  std::string joined_;
+  std::string first_text_;
+  bool is_joined_terminated_ = true;
+  std::deque<WaitingLine> waiting_;
+  WaitingLine shown_;
+};
+
+}  // namespace
+
+bool split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells,
+                 std::string& unquoted) {
+  return cut_line(line, separator, cells, unquoted) == Split::whole;
 }
 
 std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator) {

@@ -11,18 +11,20 @@
 
 namespace recald::table {
 
-/// Splits a line into trimmed cells by RFC 4180 with another separator. Up to kCellsMax.
+/// Splits a line into cells by RFC 4180 with another separator, without blanks around them and out
+/// of a spreadsheet's ="0123". Up to kCellsMax.
 /// @param unquoted  Keeps the contents of quoted cells alive.
 /// @return false when a quote stays open, or text follows a closing one.
 [[nodiscard]] bool split_cells(std::string_view line, char separator,
                                std::vector<std::string_view>& cells, std::string& unquoted);
 
-/// Lines up to 64 KiB, LF or CRLF; UTF-8, or UTF-16 with a byte order mark. A line break within
-/// quotes is a bad line.
+/// Lines up to 64 KiB, LF, CRLF or CR; UTF-8 or UTF-16. A line break within quotes becomes a blank,
+/// in a row of up to 20 lines; a quote that none of them closes makes its own line a bad one. Rows
+/// have the number of their first line.
 [[nodiscard]] std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator);
 
-/// Converts UTF-16 with a byte order mark to UTF-8, since some spreadsheets write "Unicode text";
-/// other text passes unchanged.
+/// Converts UTF-16 to UTF-8, since some spreadsheets write "Unicode text", and line ends of old
+/// kinds; other text passes unchanged.
 [[nodiscard]] csv::ByteSource as_utf8(csv::ByteSource bytes);
 
 /// Treats text that is not UTF-8 as Latin-1, in which older programs write "m³" and "°C".
