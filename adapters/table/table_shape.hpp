@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -19,6 +20,19 @@ enum class Container : std::uint8_t {
   green_button,  ///< ESPI XML.
 };
 
+/// How a column with the time of day counts.
+enum class ClockFormat : std::uint8_t {
+  time,         ///< A clock: 14:15, "00:00 - 00:15", or an hour from 0 to 23.
+  hour_ending,  ///< 1…24 is the hour of the clock that ends; so are 1…48 and 1…96 of its parts.
+  interval_number,  ///< The n-th interval since midnight: 1…25, 1…50, 1…100.
+};
+
+inline constexpr std::array<std::string_view, 3> kClockFormats{"time", "hour_ending",
+                                                               "interval_number"};
+[[nodiscard]] inline std::string_view to_string(ClockFormat format) {
+  return kClockFormats[static_cast<std::size_t>(format)];
+}
+
 /// Columns are named by their header, or "#3" for the third column.
 struct TableShape {
   Container container = Container::text;
@@ -27,6 +41,8 @@ struct TableShape {
   std::string sheet;         ///< Of a workbook; empty: the first.
   std::string time_column;   ///< Date and time, or only the date.
   std::string clock_column;  ///< The time, if it has its own column; else empty.
+  ClockFormat clock_format = ClockFormat::time;
+  std::chrono::seconds interval{0};  ///< That a clock column counts; 0: hours.
   TimeFormat time_format = TimeFormat::year_first;
   std::string timezone;      ///< For stamps without an offset; empty: the site's.
   std::string meter_column;  ///< One row per meter: its name. Empty: one column per meter.
