@@ -10,7 +10,9 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/reading_intake.hpp"
 #include "adapters/table/cell_number.hpp"
+#include "adapters/table/clock_labels.hpp"
 #include "adapters/table/delimited.hpp"
+#include "adapters/table/header_rows.hpp"
 #include "core/absent.hpp"
 #include "core/text/nearest.hpp"
 
@@ -105,6 +107,10 @@ class TableReader {
     TableRow row;
     while (rows_.next(row)) read_row(row);
     if (rows_.error()) return failed_source();
+    if (is_above_data_ && above_ > 0) {
+      intake_.refuse(last_above_, "no row has a time in column " + in_quotes(shape_.time_column),
+                     "");
+    }
     if (order_ == Order::unknown) find_order();
     hand_on_kept();
     return {};
@@ -113,23 +119,44 @@ class TableReader {
   [[nodiscard]] const ClockFacts& facts() const { return facts_; }
 
  private:
-  /// Moves to the row below the header.
+  /// The columns that are found by their names.
+  [[nodiscard]] std::vector<std::string_view> named_columns() const {
+    std::vector<std::string_view> names{shape_.time_column, shape_.clock_column,
+                                        shape_.meter_column, shape_.unit_column};
+    for (const TableMeter& meter : meters_) names.push_back(meter.column);
+    std::erase_if(names, [](std::string_view name) { return name.empty() || numbered(name); });
+    return names;
+  }
+
+  /// Moves to the row below the header: the first that has all the names. If columns are only
+  /// numbered, the rows above the first time are the header.
   Result<void> find_header() {
-    if (numbered(shape_.time_column)) return resolve({});
+    is_above_data_ = true;
+    const std::vector<std::string_view> names = named_columns();
+    if (names.empty()) return resolve({});
     TableRow row;
-    std::vector<std::string> widest;
+    std::vector<std::string> nearest;
+    std::string_view missing_there = names.front();
+    std::size_t most = 0;
     for (std::uint64_t i = 0; i < kHeaderRowsMax && rows_.next(row); ++i) {
       std::vector<std::string> header;
       for (const std::string_view cell : row.cells) header.push_back(utf8_of(cell));
-      if (find_column(header, shape_.time_column)) {
-        is_below_header_ = true;
+      const auto lacks = [&](std::string_view name) { return !find_column(header, name); };
+      const auto missing = std::find_if(names.begin(), names.end(), lacks);
+      if (missing == names.end()) {
+        mark_ = *find_column(header, names.front());
         return resolve(std::move(header));
       }
-      if (header.size() > widest.size()) widest = std::move(header);
+      const auto found =
+          names.size() - static_cast<std::size_t>(std::count_if(names.begin(), names.end(), lacks));
+      if (found < most || (found == most && header.size() <= nearest.size())) continue;
+      most = found;
+      missing_there = *missing;
+      nearest = std::move(header);
     }
     if (rows_.error()) return failed_source();
-    if (widest.empty()) return failure(ErrorCode::malformed, in_quotes(name_) + " is empty");
-    return no_column(widest, shape_.time_column);
+    if (nearest.empty()) return failure(ErrorCode::malformed, in_quotes(name_) + " is empty");
+    return no_column(nearest, missing_there);
   }
 
   [[nodiscard]] tl::unexpected<Error> failed_source() const {
@@ -193,8 +220,16 @@ class TableReader {
                     [](std::string_view cell) { return cell.empty(); })) {
       return;
     }
-    const bool is_next_to_header = std::exchange(is_below_header_, false);
-    if (is_header_again(row) || (is_next_to_header && is_row_of_units(row))) return;
+    if (is_header_again(row)) return;
+    if (is_above_data_) {
+      // Between header and data stand units or more names; with numbered columns all names do.
+      if (above_ < kHeaderRowsMax && is_more_header(row)) {
+        ++above_;
+        last_above_ = row.number;
+        return;
+      }
+      is_above_data_ = false;
+    }
     intake_.count_line();
     if (!row.is_terminated && !is_surely_whole(row)) {
       return intake_.refuse(
@@ -239,11 +274,52 @@ class TableReader {
 
   /// The row's time as its clock shows it, whatever its zone.
   [[nodiscard]] std::optional<Instant> clock_of(const TableRow& row) const {
-    const auto written = parse_stamp(cell(row, time_), shape_.time_format);
-    if (!written) return {};
-    if (clock_ == kNone) return written->clock;
-    const auto time = parse_time_of_day(cell(row, clock_));
-    return time ? std::optional{written->clock + *time} : std::nullopt;
+    auto written = parse_stamp(cell(row, time_), shape_.time_format);
+    if (!written || (clock_ != kNone && !add_clock(row, *written).empty())) return {};
+    return written->clock;
+  }
+
+  /// Adds the time of the clock column to a date, as if no day were longer than others.
+  /// @return why it cannot be added, or nothing
+  [[nodiscard]] std::string add_clock(const TableRow& row, WrittenTime& written) const {
+    const std::string_view text = cell(row, clock_);
+    if (shape_.clock_format == ClockFormat::time) {
+      const auto clock = parse_clock(text);
+      if (!clock) return "time " + in_quotes(text) + " is not hh:mm";
+      written.clock += clock->time;
+      if (clock->utc_offset) written.utc_offset = clock->utc_offset;
+      written.is_zone_named = written.is_zone_named || clock->is_zone_named;
+      return "";
+    }
+    const seconds length = interval_of_clock();
+    auto number = parse_label(text);
+    if (const auto clock = parse_clock(text); clock && !clock->is_hour) {
+      number = static_cast<int>(clock->time / length);
+    }
+    if (!number || *number < 1) {
+      return in_quotes(text) + " in column " + in_quotes(shape_.clock_column) +
+             " is no number of an hour or interval from 1 on";
+    }
+    written.clock += (*number - 1) * length;
+    return "";
+  }
+
+  [[nodiscard]] seconds interval_of_clock() const {
+    return shape_.interval.count() > 0 ? shape_.interval : seconds{3600};
+  }
+
+  /// The instant of the n-th interval of a day, which may have 23 or 25 hours.
+  /// @param as_if_usual  As if each had 24.
+  [[nodiscard]] std::optional<Instant> counted_instant(Instant as_if_usual) {
+    const seconds length = interval_of_clock();
+    // The last numbers of a day of 25 hours look like the first of the next day.
+    const Instant date = counted_date_;
+    if (date != date_span_date_) {
+      date_span_ = calendar_.day_span(metering::Day{std::chrono::floor<std::chrono::days>(date)});
+      date_span_date_ = date;
+    }
+    const Instant at = date_span_.begin + (as_if_usual - date);
+    return at + length <= date_span_.end ? std::optional{at} : std::nullopt;
   }
 
   [[nodiscard]] static std::string_view cell(const TableRow& row, std::size_t column) {
@@ -251,15 +327,16 @@ class TableReader {
   }
 
   [[nodiscard]] bool is_header_again(const TableRow& row) const {
-    return time_ < header_.size() && cell(row, time_) == header_[time_];
+    return mark_ < header_.size() && cell(row, mark_) == header_[mark_];
   }
 
-  /// Whether the row below the names has no time, and no number in any meter's column.
-  [[nodiscard]] bool is_row_of_units(const TableRow& row) const {
-    if (parse_stamp(cell(row, time_), shape_.time_format)) return false;
-    return std::none_of(value_.begin(), value_.end(), [&](std::size_t column) {
-      return parse_cell(cell(row, column), shape_.decimal).has_value();
-    });
+  /// Whether a row has no time, and no number in any meter's column. Without a header, what stands
+  /// above the first time is one, whatever it has.
+  [[nodiscard]] bool is_more_header(const TableRow& row) const {
+    if (is_stamp(cell(row, time_), shape_.time_format)) return false;
+    return header_.empty() || std::none_of(value_.begin(), value_.end(), [&](std::size_t column) {
+             return parse_cell(cell(row, column), shape_.decimal).has_value();
+           });
   }
 
   [[nodiscard]] bool is_surely_whole(const TableRow& row) const {
@@ -278,13 +355,24 @@ class TableReader {
     const std::string_view text = cell(row, time_);
     auto written = parse_stamp(text, shape_.time_format);
     if (!written) return refuse(written.error().message);
+    counted_date_ = written->clock;
     if (clock_ != kNone) {
-      const auto time = parse_time_of_day(cell(row, clock_));
-      if (!time) return refuse("time " + in_quotes(cell(row, clock_)) + " is not hh:mm");
-      written->clock += *time;
+      if (const std::string why = add_clock(row, *written); !why.empty()) return refuse(why);
     }
-    if (written->utc_offset) return written->clock - *written->utc_offset;
+    if (written->utc_offset) {
+      const Instant instant = written->clock - *written->utc_offset;
+      if (!written->is_zone_named || fits_zone(instant, *written->utc_offset)) return instant;
+      return refuse("timestamp " + in_quotes(text) + ": the letters of its zone stand for " +
+                    offset_text(*written->utc_offset) + ", far from " + calendar_.zone_name() +
+                    "; give 'timezone' if they mean another, and take them out of the file");
+    }
     ++facts_.naive;
+    if (clock_ != kNone && shape_.clock_format == ClockFormat::interval_number) {
+      const auto counted = counted_instant(written->clock);
+      if (counted) return counted;
+      return refuse("number " + in_quotes(cell(row, clock_)) + " is more than the intervals of " +
+                    in_quotes(text) + " in " + calendar_.zone_name());
+    }
     const auto instant = clocks_[clock].instant_of(written->clock);
     if (clocks_[clock].hour() != ClockReader::Hour::usual) {
       count_change(row, clocks_[clock].hour(), written->clock);
@@ -316,6 +404,21 @@ class TableReader {
       case ClockReader::Hour::usual:
         break;
     }
+  }
+
+  /// The same letters stand for zones on several continents.
+  [[nodiscard]] bool fits_zone(Instant instant, seconds offset) const {
+    constexpr seconds kFar{4 * 3600};
+    if (calendar_.zone_name() == "Etc/UTC") return true;  // nobody told the building's
+    const seconds apart = calendar_.utc_offset(instant) - offset;
+    return apart <= kFar && apart >= -kFar;
+  }
+
+  [[nodiscard]] static std::string offset_text(seconds offset) {
+    const auto minutes = std::abs(offset.count()) / 60;
+    const auto two = [](std::int64_t n) { return (n < 10 ? "0" : "") + std::to_string(n); };
+    return std::string{"UTC"} + (offset.count() < 0 ? "-" : "+") + two(minutes / 60) + ":" +
+           two(minutes % 60);
   }
 
   void read_wide(const TableRow& row) {
@@ -359,10 +462,12 @@ class TableReader {
                      .value = kAbsent,
                      .conversion = meter.conversion,
                      .text = row.text};
-    if (!is_blank(text)) {
-      const auto value = parse_cell(text, shape_.decimal);
-      const bool is_usable = value && std::abs(*value) <= csv::kValueMax;
-      if (!is_usable) {
+    if (is_blank(text)) {
+      if (!text.empty()) facts_.add_word(text);
+    } else {
+      auto value = parse_cell(text, shape_.decimal);
+      if (!value) value = with_unit(text, meter, reading);
+      if (!value || std::abs(*value) > csv::kValueMax) {
         return intake_.refuse(
             row.number,
             "meter " + in_quotes(meter.rows.name) + ": " + cell_problem(text, shape_.decimal),
@@ -371,6 +476,24 @@ class TableReader {
       reading.value = *value;
     }
     intake_.take(meter, reading);
+  }
+
+  /// The number of "12.3 kWh", whose unit then is the reading's.
+  std::optional<double> with_unit(std::string_view text, const csv::IntakeMeter& meter,
+                                  csv::Row& reading) {
+    const NumberAndUnit parts = split_number(text);
+    if (parts.unit.empty() || parts.number.empty()) return {};
+    const auto value = parse_cell(parts.number, shape_.decimal);
+    if (!value) return {};
+    if (parts.unit != cell_unit_ || cell_utility_ != meter.rows.utility) {
+      const auto known = metering::find_unit(parts.unit, meter.rows.utility, meter.rows.units);
+      if (!known) return {};
+      cell_unit_ = parts.unit;
+      cell_utility_ = meter.rows.utility;
+      cell_conversion_ = *known;
+    }
+    reading.conversion = cell_conversion_;
+    return value;
   }
 
   RowSource& rows_;
@@ -388,7 +511,16 @@ class TableReader {
   std::map<std::string, std::size_t, std::less<>> by_name_;
   std::size_t last_meter_ = 0;
   std::vector<ClockReader> clocks_;  ///< One for the table, or one per meter of a long table.
-  bool is_below_header_ = false;
+  bool is_above_data_ = false;
+  std::uint64_t above_ = 0;  ///< Rows between header and data so far.
+  std::uint64_t last_above_ = 0;
+  std::size_t mark_ = kNone;  ///< The column whose name shows that the header comes again.
+  Instant counted_date_{};
+  Instant date_span_date_ = Instant::min();
+  metering::TimeSpan date_span_{};
+  std::string cell_unit_;  ///< The unit that a cell had last, and its meaning.
+  metering::Utility cell_utility_ = metering::Utility::electricity;
+  metering::UnitConversion cell_conversion_{};
   std::size_t last_cells_ = 0;
   std::size_t last_decimals_ = 0;
   Order order_ = Order::unknown;
@@ -400,10 +532,15 @@ class TableReader {
 
 std::optional<std::size_t> find_column(std::span<const std::string> header,
                                        std::string_view column) {
-  const auto named = std::find(header.begin(), header.end(), column);
-  if (named != header.end() && !column.empty()) {
-    return static_cast<std::size_t>(named - header.begin());
+  if (column.empty()) return {};
+  auto named = std::find(header.begin(), header.end(), column);
+  if (named == header.end() && !numbered(column)) {
+    // Line breaks and blanks of other widths are no part of a name.
+    named = std::find_if(
+        header.begin(), header.end(),
+        [wanted = squeezed(column)](const auto& text) { return squeezed(text) == wanted; });
   }
+  if (named != header.end()) return static_cast<std::size_t>(named - header.begin());
   return numbered(column);
 }
 
@@ -411,7 +548,12 @@ char likely_separator(std::string_view line) {
   char likely = ',';
   std::ptrdiff_t most = 0;
   for (const char sign : {'\t', ';', ',', '|'}) {
-    const auto count = std::count(line.begin(), line.end(), sign);
+    std::ptrdiff_t count = 0;
+    bool is_inside = false;
+    for (const char c : line) {
+      if (c == '"') is_inside = !is_inside;
+      if (c == sign && !is_inside) ++count;
+    }
     if (count <= most) continue;
     most = count;
     likely = sign;

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "adapters/csv/reading_intake.hpp"
 #include "adapters/table/row_source.hpp"
@@ -31,6 +32,12 @@ struct ClockFacts {
   std::uint64_t naive = 0;    ///< Stamps without an offset.
   std::uint64_t skipped = 0;  ///< Of these, times that the clock skips.
   std::map<metering::Day, ClockChange> changes;
+  std::uint64_t words = 0;    ///< Cells with a word for no value, such as "n/a".
+  std::string first_word;     ///< The first of them.
+
+  void add_word(std::string_view word) {
+    if (words++ == 0) first_word = word;
+  }
 };
 
 /// The intake's settings for these meters.
@@ -38,14 +45,16 @@ struct ClockFacts {
 
 /// Reads the rows once, in order of time. Memory does not grow with their number, except for
 /// counters and for tables whose first rows run from new to old, which are kept and read from
-/// their end. The header is the first row with the time column's name. Rows above it are ignored,
-/// as are blank rows, a row of units below the header, and repeated headers. A bad row is
+/// their end. The header is the first row with the names of all columns. Rows above it are ignored,
+/// as are blank rows, rows of units or more names below it, and repeated headers. A bad row is
 /// reported with its number and skipped. If the last line of a text has no line end, it counts
 /// only when it is certainly complete: it has as many cells as the lines before, and its last
 /// cell as many decimals.
 ///
 /// Stamps without an offset are on the clock of the shape's zone, or else of `calendar`;
-/// `ClockReader` describes the hour that occurs twice. A time that the clock skips is a bad row.
+/// `ClockReader` describes the hour that occurs twice. A time that the clock skips is a bad row,
+/// and so is one whose zone has letters that stand for an offset far from the clock's. A cell with
+/// a unit of its own, "12.3 kWh", is read in that unit.
 ///
 /// @param name    Names the file in messages.
 /// @param intake  For these meters; it may continue with further files of theirs.

@@ -9,8 +9,13 @@
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/table/cell_number.hpp"
-#include "adapters/table/delimited.hpp"
-#include "core/metering/units.hpp"
+#include "adapters/table/clock_labels.hpp"
+#include "adapters/table/decimal_sign.hpp"
+#include "adapters/table/header_rows.hpp"
+#include "adapters/table/meter_columns.hpp"
+#include "adapters/table/same_load.hpp"
+#include "adapters/table/time_column.hpp"
+#include "adapters/table/words.hpp"
 #include "core/text/ascii.hpp"
 #include "core/text/printable.hpp"
 
@@ -20,201 +25,68 @@ namespace {
 using metering::Instant;
 using std::chrono::seconds;
 
-constexpr double kMost = 0.8;  // share of a column's cells that must be of one kind
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 constexpr std::array kDateFormats{TimeFormat::year_first, TimeFormat::day_first,
                                   TimeFormat::month_first};
 
-bool contains_any(std::string_view text, std::span<const std::string_view> words) {
-  const std::string lower = to_lower(text);
-  return std::any_of(words.begin(), words.end(),
-                     [&](std::string_view word) { return lower.find(word) != std::string::npos; });
-}
-
-std::string_view cell_of(const KeptRow& row, std::size_t column) {
-  return column < row.cells.size() ? std::string_view{row.cells[column]} : std::string_view{};
-}
-
-std::size_t filled_cells(const KeptRow& row) {
-  return static_cast<std::size_t>(std::count_if(
-      row.cells.begin(), row.cells.end(), [](const std::string& cell) { return !cell.empty(); }));
-}
-
-bool is_number(std::string_view cell) {
-  const DecimalSigns signs = possible_decimal_signs(cell);
-  return signs.point || signs.comma;
-}
-
-/// Whether a cell is a date in some order of its parts, and not a plain number, except one
-/// like 202403311415.
-bool is_stamp(std::string_view cell) {
-  if (cell.size() < 6 || cell.size() > 40) return false;
-  if (is_number(cell) && (cell.size() < 8 || !csv::is_digits(cell))) return false;
-  return std::any_of(kDateFormats.begin(), kDateFormats.end(),
-                     [&](TimeFormat format) { return parse_stamp(cell, format).has_value(); });
-}
-
 std::string row_words(const KeptRow& row) { return "row " + std::to_string(row.number); }
-
-/// The contents of one column in the rows below the header.
-struct ColumnKinds {
-  std::size_t filled = 0;
-  std::size_t numbers = 0;
-  std::size_t times_of_day = 0;
-  std::set<std::string> texts;  ///< Different texts that are not numbers, up to a hundred.
-  std::size_t words = 0;        ///< Cells that are not numbers.
-
-  [[nodiscard]] bool is_mostly(std::size_t count) const {
-    return filled > 0 && static_cast<double>(count) >= kMost * static_cast<double>(filled);
-  }
-};
 
 /// Builds up the guess step by step.
 class TableSniffer {
  public:
   explicit TableSniffer(std::span<const KeptRow> rows) {
     for (const KeptRow& row : rows) {
-      if (filled_cells(row) > 0) rows_.push_back(&row);
+      const bool is_filled = std::any_of(row.cells.begin(), row.cells.end(),
+                                         [](const std::string& cell) { return !cell.empty(); });
+      if (is_filled) rows_.push_back(&row);
       width_ = std::max(width_, row.cells.size());
     }
   }
 
   Result<TableGuess> run() {
     if (rows_.empty()) return failure(ErrorCode::malformed, "it is empty");
-    TRY(find_times());
-    TRY(find_header());
-    inspect_columns();
+    const auto times = find_time_column(rows_, width_);
+    if (!times) return failure(ErrorCode::malformed, no_times());
+    times_ = *times;
+    kinds_ = kinds_of(data(), width_);
+    header_ = find_header_rows(rows_, times_, kinds_);
+    guess_.shape.time_column = column_text(times_.column);
     find_clock();
     TRY(find_time_format());
     find_meters();
     TRY(find_decimal());
     TRY(list_values());
+    leave_out_same_loads();
     return std::move(guess_);
   }
 
  private:
-  /// Finds the column with most stamps, and the first row that has one.
-  Result<void> find_times() {
-    std::size_t most = 0;
-    for (std::size_t column = 0; column < width_; ++column) {
-      const auto count = static_cast<std::size_t>(
-          std::count_if(rows_.begin(), rows_.end(),
-                        [&](const KeptRow* row) { return is_stamp(cell_of(*row, column)); }));
-      if (count <= most) continue;
-      most = count;
-      time_ = column;
-    }
-    const auto is_time = [&](const KeptRow* row) { return is_stamp(cell_of(*row, time_)); };
-    if (most > 0) {
-      data_ = static_cast<std::size_t>(std::find_if(rows_.begin(), rows_.end(), is_time) -
-                                       rows_.begin());
-      if (2 * most >= rows_.size() - data_) return {};
-    }
-    for (std::size_t column = 0; column < width_; ++column) {
-      if (find_counted_times(column)) return {};
-    }
-    return failure(ErrorCode::malformed,
-                   "no column has dates and times in most of its rows; recald looks for such as "
-                   "2024-03-31 14:15, 31/03/2024 14:15 or 03/31/2024 2:15 PM");
-  }
-
-  /// Finds a column of numbers that always rise or always fall: days of a spreadsheet, or
-  /// seconds since 1970.
-  bool find_counted_times(std::size_t column) {
-    std::vector<double> counts;
-    std::size_t first = kNowhere;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const std::string_view cell = cell_of(*rows_[i], column);
-      auto count = parse_cell(cell, '.');
-      if (!count) count = parse_cell(cell, ',');
-      if (!count) continue;
-      if (first == kNowhere) first = i;
-      counts.push_back(*count);
-    }
-    if (counts.size() < 3 || counts.size() + first < rows_.size() * 9 / 10) return false;
-    if (counts.front() > counts.back()) std::reverse(counts.begin(), counts.end());
-    if (!std::is_sorted(counts.begin(), counts.end())) return false;
-    const double begin = counts.front();
-    const double end = counts.back();
-    const double step = (end - begin) / static_cast<double>(counts.size() - 1);
-    constexpr double kLatest_s =
-        static_cast<double>(metering::kLatestInstant.time_since_epoch().count());
-    constexpr double kLatestDay = 25'569.0 + kLatest_s / 86'400.0;  // since the end of 1899
-    const bool is_excel = begin > 32'000.0 && end < kLatestDay && step > 0.0 && step < 1.01;
-    const bool is_unix = (begin > 6e8 && end < kLatest_s && step >= 60.0) ||
-                         (begin > 6e11 && end < 1e3 * kLatest_s && step >= 6e4);
-    if (!is_excel && !is_unix) return false;
-    time_ = column;
-    data_ = first;
-    guess_.shape.time_format = is_excel ? TimeFormat::excel : TimeFormat::unix;
-    is_counted_ = true;
-    return true;
-  }
-
-  Result<void> find_header() {
-    if (data_ == 0) return {};
-    std::size_t at = data_ - 1;
-    const auto is_units = [&](const KeptRow& row) {
-      std::size_t units = 0;
-      for (std::size_t column = 0; column < row.cells.size(); ++column) {
-        const std::string_view cell = cell_of(row, column);
-        if (column == time_ || cell.empty()) continue;
-        const NameAndUnit parts = split_unit(cell);
-        if (!parts.name.empty() || parts.unit.empty()) return false;
-        ++units;
-      }
-      return units > 0;
-    };
-    // A row of units stands below names; units without names are the header itself.
-    if (at > 0 && is_units(*rows_[at]) && filled_cells(*rows_[at - 1]) >= 2 &&
-        filled_cells(*rows_[at - 1]) + 1 >= filled_cells(*rows_[at])) {
-      units_ = rows_[at];
-      --at;
-    }
-    header_ = rows_[at];
-    if (filled_cells(*header_) < 2) {
-      header_ = nullptr;
-      return {};
-    }
-    if (at == 0) return {};
-    const KeptRow& above = *rows_[at - 1];
-    const bool is_another = filled_cells(above) >= 3 &&
-                            2 * filled_cells(above) >= filled_cells(*header_) &&
-                            std::none_of(above.cells.begin(), above.cells.end(),
-                                         [](const std::string& cell) { return is_number(cell); });
-    if (!is_another) return {};
-    return failure(ErrorCode::malformed,
-                   "rows " + std::to_string(above.number) + " and " +
-                       std::to_string(header_->number) +
-                       " both look like headers; keep one row with the columns' names, and at most "
-                       "a row of units below it");
-  }
-
   [[nodiscard]] std::span<const KeptRow* const> data() const {
-    return std::span{rows_}.subspan(data_);
+    return std::span{rows_}.subspan(times_.first_row);
   }
 
-  void inspect_columns() {
-    kinds_.assign(width_, {});
-    for (const KeptRow* row : data()) {
-      for (std::size_t column = 0; column < row->cells.size(); ++column) {
-        const std::string_view cell = cell_of(*row, column);
-        if (is_blank(cell)) continue;
-        ColumnKinds& kinds = kinds_[column];
-        ++kinds.filled;
-        if (is_number(cell)) {
-          ++kinds.numbers;
-        } else {
-          ++kinds.words;
-        }
-        if (parse_time_of_day(cell)) ++kinds.times_of_day;
-        if (kinds.texts.size() < 100) kinds.texts.insert(std::string{cell});
-      }
-    }
+  /// Names the cell that is most like a time.
+  [[nodiscard]] std::string no_times() const {
+    std::string words =
+        "no column has dates and times in most of its rows; recald looks for such as "
+        "2024-03-31 14:15, 31/03/2024 14:15 or 03/31/2024 2:15 PM";
+    const KeptRow& row = *rows_[rows_.size() / 2];
+    const auto likeness = [](const std::string& cell) {
+      return std::count_if(cell.begin(), cell.end(),
+                           [](char c) {
+                             return (c >= '0' && c <= '9') || c == ':' || c == '-' || c == '/';
+                           }) *
+             (cell.size() < 60 && !is_number(cell) ? 1 : 0);
+    };
+    const auto most = std::max_element(
+        row.cells.begin(), row.cells.end(),
+        [&](const std::string& a, const std::string& b) { return likeness(a) < likeness(b); });
+    if (most == row.cells.end() || likeness(*most) < 4) return words;
+    return words + "; nearest to one is " + csv::in_quotes(*most) + " in " + row_words(row);
   }
 
   [[nodiscard]] std::string_view header_text(std::size_t column) const {
-    return header_ == nullptr ? std::string_view{} : cell_of(*header_, column);
+    return header_.names == nullptr ? std::string_view{} : cell_of(*header_.names, column);
   }
 
   /// The name by which the column is found again.
@@ -225,46 +97,170 @@ class TableSniffer {
       if (header_text(i) == text) first = i;
     }
     if (text.empty() || first != column) return "#" + std::to_string(column + 1);
-    return std::string{text};
+    return squeezed(text);
+  }
+
+  /// All that the header says of a column, or how a message names it.
+  [[nodiscard]] const std::string& full_text(std::size_t column) const {
+    return header_.texts[column];
+  }
+  [[nodiscard]] Meanings meanings_at(std::size_t column) const {
+    return meanings_of(full_text(column));
+  }
+
+  /// Starts are better than what says neither, and that better than ends.
+  [[nodiscard]] int side_of(std::size_t column) const {
+    const Meanings meanings = meanings_at(column);
+    if (meanings.has(Meaning::from)) return meanings.has(Meaning::to) ? 1 : 0;
+    return meanings.has(Meaning::to) ? 2 : 1;
+  }
+
+  void set_stamps(csv::Stamps stamps, std::string because) {
+    if (guess_.stamps) return;
+    guess_.stamps = stamps;
+    guess_.stamps_because = std::move(because);
   }
 
   /// If the stamps are only dates, finds the column with the times.
   void find_clock() {
-    guess_.shape.time_column = column_text(time_);
-    if (is_counted_) return;
-    const bool has_times = std::any_of(data().begin(), data().end(), [&](const KeptRow* row) {
-      for (const TimeFormat format : kDateFormats) {
-        const auto stamp = parse_stamp(cell_of(*row, time_), format);
-        if (stamp && stamp->has_time) return stamp->clock != floor_day(stamp->clock);
+    const bool is_date_only =
+        !times_.is_counted && std::none_of(data().begin(), data().end(), [&](const KeptRow* row) {
+          for (const TimeFormat format : kDateFormats) {
+            const auto stamp = parse_stamp(cell_of(*row, times_.column), format);
+            if (stamp) return stamp->has_time && stamp->clock != floor_day(stamp->clock);
+          }
+          return false;
+        });
+    if (is_date_only) {
+      for (const int side : {side_of(times_.column), 0, 1, 2}) {
+        if (clock_ == kNowhere) clock_ = clock_column(side);
       }
-      return false;
-    });
-    if (has_times) return;
+      if (clock_ == kNowhere) find_labels();
+      if (clock_ != kNowhere) guess_.shape.clock_column = column_text(clock_);
+    }
+    say_stamps();
+  }
+
+  [[nodiscard]] std::size_t clock_column(int side) const {
     for (std::size_t column = 0; column < width_; ++column) {
       const ColumnKinds& kinds = kinds_[column];
-      if (column == time_ || !kinds.is_mostly(kinds.times_of_day)) continue;
-      if (kinds.is_mostly(kinds.numbers)) continue;  // 1415 may be anything
-      clock_ = column;
-      guess_.shape.clock_column = column_text(column);
-      return;
+      if (column == times_.column || !kinds.is_mostly(kinds.times_of_day)) continue;
+      if (side_of(column) != side) continue;
+      // 1415 may be anything, and 14.15 a number, unless the header says a time.
+      const Meanings meanings = meanings_at(column);
+      const bool is_called_so =
+          meanings.has_any({Meaning::clock, Meaning::time}) && !meanings.has(Meaning::use);
+      if (kinds.is_mostly(kinds.numbers) && (kinds.is_whole || !is_called_so)) continue;
+      return column;
     }
+    return kNowhere;
   }
 
   static Instant floor_day(Instant t) { return std::chrono::floor<std::chrono::days>(t); }
+
+  /// Numbers of hours or intervals: from 0 or 1 to the end of a day, and again.
+  void find_labels() {
+    for (std::size_t column = 0; column < width_; ++column) {
+      if (column == times_.column) continue;
+      std::set<int> labels;
+      std::size_t labelled = 0;
+      std::size_t turns = 0;  // within a date
+      int last = -1;
+      std::string_view date;
+      bool rises = false;
+      for (const KeptRow* row : data()) {
+        const auto label = parse_label(cell_of(*row, column));
+        if (!label) continue;
+        ++labelled;
+        labels.insert(*label);
+        const bool is_same_date = cell_of(*row, times_.column) == date;
+        if (is_same_date && *label != last) {
+          if (last >= 0 && rises != (*label > last)) ++turns;
+          rises = *label > last;
+        }
+        last = *label;
+        date = cell_of(*row, times_.column);
+      }
+      if (!kinds_[column].is_mostly(labelled) || labels.size() < 23) continue;
+      const bool is_complete =
+          *labels.rbegin() - *labels.begin() + 1 == static_cast<int>(labels.size());
+      // Once a day the count begins again, and then it may be another way round.
+      if (!is_complete || *labels.begin() > 1 || 10 * turns > labelled) continue;
+      if (take_labels(column, *labels.begin(), *labels.rbegin())) return;
+    }
+  }
+
+  bool take_labels(std::size_t column, int first, int last) {
+    if (first == 0) {
+      if (last > 23) return false;
+      clock_ = column;  // hours of a clock
+      return true;
+    }
+    for (const int usual : {24, 48, 96, 144, 288}) {
+      const int change = usual / 24;
+      if (last < usual - change || last > usual + change) continue;
+      clock_ = column;
+      guess_.shape.clock_format = ClockFormat::interval_number;
+      guess_.shape.interval = *interval_of_labels(usual);
+      guess_.labels_a_day = usual;
+      return true;
+    }
+    return false;
+  }
+
+  /// What is certain about starts and ends: ranges, numbered intervals, words of the header.
+  void say_stamps() {
+    if (guess_.labels_a_day > 0) {
+      set_stamps(csv::Stamps::start, "a number stands for its whole interval");
+      return;
+    }
+    if (clock_ != kNowhere) find_midnight_as_24();
+    const std::size_t last = clock_ == kNowhere ? times_.column : clock_;
+    const bool is_range = std::any_of(data().begin(), data().end(), [&](const KeptRow* row) {
+      const std::string_view cell = cell_of(*row, last);
+      if (clock_ != kNowhere) {
+        const auto clock = parse_clock(cell);
+        return clock && clock->is_range;
+      }
+      return std::any_of(kDateFormats.begin(), kDateFormats.end(), [&](TimeFormat format) {
+        const auto stamp = parse_stamp(cell, format);
+        return stamp && stamp->is_range;
+      });
+    });
+    if (is_range) set_stamps(csv::Stamps::start, "each says from when to when");
+    if (side_of(last) == 0) set_stamps(csv::Stamps::start, "by the column's name");
+    if (side_of(last) == 2) set_stamps(csv::Stamps::end, "by the column's name");
+  }
+
+  /// Times of day that end at 24:00 may be the hours of the day, whatever the clock does.
+  void find_midnight_as_24() {
+    std::set<seconds> times;
+    for (const KeptRow* row : data()) {
+      const auto clock = parse_clock(cell_of(*row, clock_));
+      if (clock && !clock->is_hour && !clock->is_range) times.insert(clock->time);
+    }
+    constexpr seconds kEnd{86'400};
+    if (times.size() < 23 || !times.contains(kEnd)) return;
+    const seconds step = kEnd - *std::prev(times.end(), 2);
+    if (kEnd % step != seconds{0} || !interval_of_labels(static_cast<int>(kEnd / step))) return;
+    guess_.shape.interval = step;
+    guess_.labels_a_day = static_cast<int>(kEnd / step);
+  }
 
   struct FormatTrial {
     std::size_t wrong = 0;
     std::size_t jumps = 0;  ///< Steps of more than a day and a half.
     const KeptRow* first_wrong = nullptr;
-    std::size_t offsets = 0;
+    std::size_t with_offset = 0;
     std::size_t read = 0;
+    std::set<seconds> offsets;
   };
 
   [[nodiscard]] FormatTrial trial_of(TimeFormat format) const {
     FormatTrial trial;
     std::optional<Instant> last;
-    for (const KeptRow* row : data()) {
-      const std::string_view cell = cell_of(*row, time_);
+    for (const KeptRow* row : data().first(dated_rows())) {
+      const std::string_view cell = cell_of(*row, times_.column);
       if (cell.empty()) continue;
       const auto stamp = parse_stamp(cell, format);
       if (!stamp) {
@@ -273,7 +269,10 @@ class TableSniffer {
         continue;
       }
       ++trial.read;
-      if (stamp->utc_offset) ++trial.offsets;
+      if (stamp->utc_offset) {
+        ++trial.with_offset;
+        trial.offsets.insert(*stamp->utc_offset);
+      }
       constexpr seconds kJump{36 * 3600};
       if (last && (stamp->clock - *last > kJump || *last - stamp->clock > kJump)) ++trial.jumps;
       last = stamp->clock;
@@ -281,14 +280,15 @@ class TableSniffer {
     return trial;
   }
 
+  /// Rows of data up to the last with a date: sums and remarks may stand below.
+  [[nodiscard]] std::size_t dated_rows() const {
+    std::size_t count = data().size();
+    while (count > 0 && !is_date(cell_of(*data()[count - 1], times_.column))) --count;
+    return count;
+  }
+
   Result<void> find_time_format() {
-    if (is_counted_) {
-      const bool is_excel = guess_.shape.time_format == TimeFormat::excel;
-      guess_.time_format_because =
-          is_excel ? "days as a spreadsheet counts them" : "seconds since 1970, in UTC";
-      guess_.has_offsets = !is_excel;
-      return {};
-    }
+    if (times_.is_counted) return take_counted();
     std::array<FormatTrial, 3> trials;
     for (std::size_t i = 0; i < 3; ++i) trials[i] = trial_of(kDateFormats[i]);
     const auto best = static_cast<std::size_t>(
@@ -298,16 +298,39 @@ class TableSniffer {
                          }) -
         trials.begin());
     const FormatTrial& trial = trials[best];
-    const std::string example = csv::in_quotes(cell_of(*rows_[data_], time_));
+    const std::string example = csv::in_quotes(cell_of(*data().front(), times_.column));
     if (100 * trial.wrong > trial.wrong + trial.read) {
+      const std::string odd = csv::in_quotes(cell_of(*trial.first_wrong, times_.column));
       return failure(ErrorCode::malformed,
-                     "its dates change their format: " + row_words(*rows_[data_]) + " has " +
-                         example + ", " + row_words(*trial.first_wrong) + " has " +
-                         csv::in_quotes(cell_of(*trial.first_wrong, time_)));
+                     "its dates change their format: " + row_words(*data().front()) + " has " +
+                         example + ", " + row_words(*trial.first_wrong) + " has " + odd);
+    }
+    constexpr std::size_t kOffsetsMax = 4;  // of one place, whatever its rules
+    if (trial.offsets.size() > kOffsetsMax) {
+      return failure(ErrorCode::malformed,
+                     "its times such as " + example +
+                         " would have many offsets from UTC; if they are written from - to, put "
+                         "blanks around the hyphen");
     }
     guess_.shape.time_format = kDateFormats[best];
-    guess_.has_offsets = trial.offsets == trial.read;
+    guess_.has_offsets = trial.with_offset == trial.read;
     explain(trials, best, example);
+    return {};
+  }
+
+  Result<void> take_counted() {
+    guess_.shape.time_format = times_.format;
+    const bool is_excel = times_.format == TimeFormat::excel;
+    guess_.time_format_because =
+        is_excel ? "days as a spreadsheet counts them" : "seconds since 1970, in UTC";
+    guess_.has_offsets = !is_excel;
+    const std::string name = folded(full_text(times_.column));
+    if (!is_excel && name.find(" local ") != std::string::npos) {
+      return failure(ErrorCode::malformed,
+                     "column " + csv::in_quotes(full_text(times_.column)) +
+                         " counts seconds of a local clock, which recald does not read; export "
+                         "seconds in UTC, or dates and times");
+    }
     return {};
   }
 
@@ -317,8 +340,8 @@ class TableSniffer {
     if (best == 0) return;
     const FormatTrial& other = trials[3 - best];
     if (other.first_wrong != nullptr) {
-      guess_.time_format_because = csv::in_quotes(cell_of(*other.first_wrong, time_)) + " in " +
-                                   row_words(*other.first_wrong) + " decides";
+      guess_.time_format_because = csv::in_quotes(cell_of(*other.first_wrong, times_.column)) +
+                                   " in " + row_words(*other.first_wrong) + " decides";
     } else if (other.jumps > trials[best].jumps) {
       guess_.time_format_because += ", the other way round its days would not follow each other";
     } else {
@@ -329,194 +352,248 @@ class TableSniffer {
     }
   }
 
+  [[nodiscard]] std::string_view text_below(std::size_t column) const {
+    return header_.units == nullptr ? std::string_view{} : cell_of(*header_.units, column);
+  }
+
+  /// Whether rows come with the time of an earlier one, as those of several meters do.
+  [[nodiscard]] bool do_times_repeat() const {
+    std::set<std::pair<std::string_view, std::string_view>> different;
+    std::size_t count = 0;
+    for (const KeptRow* row : data()) {
+      const std::string_view clock =
+          clock_ == kNowhere ? std::string_view{} : cell_of(*row, clock_);
+      different.emplace(cell_of(*row, times_.column), clock);
+      ++count;
+    }
+    return 10 * different.size() < 9 * count;
+  }
+
+  /// Of two columns of numbers, one called "meter" may have the numbers 1, 2 and 3 of meters.
+  void take_short_numbers(std::vector<std::size_t>& names) {
+    if (values_.size() != 2) return;
+    for (const std::size_t column : values_) {
+      const ColumnKinds& kinds = kinds_[column];
+      const Meanings meanings = meanings_at(column);
+      const bool is_called_so = meanings.has_any({Meaning::meter, Meaning::identifier}) &&
+                                !meanings.has(Meaning::use) &&
+                                split_unit(full_text(column)).unit.empty();
+      const bool are_ids =
+          std::all_of(kinds.texts.begin(), kinds.texts.end(),
+                      [](const std::string& text) { return csv::is_digits(text); });
+      if (is_called_so && are_ids && kinds.repeats() && do_times_repeat()) names.push_back(column);
+    }
+    for (const std::size_t column : names) std::erase(values_, column);
+  }
+
   /// A long table has one column of numbers, and a column that names each row's meter.
   void find_meters() {
-    std::vector<std::size_t> numbers;
     std::vector<std::size_t> names;
-    constexpr std::array<std::string_view, 16> kMeterWords{
-        "meter", "point",         "sensor",  "channel", "device", "tag",      "series", "mpan",
-        "mprn",  "z\xC3\xA4hler", "zaehler", "esi id",  "esiid",  "register", "name",   "variable"};
-    constexpr std::array<std::string_view, 7> kFlagWords{"status", "quality", "flag",   "estimate",
-                                                         "note",   "remark",  "comment"};
+    const bool is_long = do_times_repeat();
+    why_.assign(width_, "");
     for (std::size_t column = 0; column < width_; ++column) {
       const ColumnKinds& kinds = kinds_[column];
-      if (column == time_ || column == clock_ || kinds.filled == 0) continue;
-      const std::string_view header = header_text(column);
-      const bool is_all_units = std::all_of(kinds.texts.begin(), kinds.texts.end(),
-                                            [](const std::string& text) { return is_unit(text); });
-      if (is_all_units && kinds.words == kinds.filled) {
+      if (column == times_.column || column == clock_ || kinds.filled == 0) continue;
+      if (is_column_of_units(full_text(column), kinds)) {
         unit_ = column;
         continue;
       }
-      const bool repeats = kinds.texts.size() < 100 && kinds.texts.size() * 3 <= kinds.filled;
-      const bool is_called_so =
-          contains_any(header, kMeterWords) && split_unit(header).unit.empty();
-      const bool may_name = repeats && !contains_any(header, kFlagWords);
-      if (kinds.is_mostly(kinds.words) && may_name && (is_called_so || kinds.texts.size() > 1)) {
-        names.push_back(column);
-      } else if (kinds.is_mostly(kinds.numbers)) {
-        numbers.push_back(column);
+      const Meanings meanings = meanings_at(column);
+      const bool is_called_so = meanings.has_any({Meaning::meter, Meaning::identifier}) &&
+                                split_unit(full_text(column)).unit.empty();
+      if (kinds.is_mostly(kinds.numbers)) {
+        why_[column] = why_no_meter(full_text(column), text_below(column), kinds);
+        if (why_[column].empty()) values_.push_back(column);
+        if (why_[column] == "an identifier" && is_called_so) numbered_.push_back(column);
+        continue;
       }
-    }
-    // Names may be numbers too: 100200300 in a column called "meter id".
-    if (names.empty() && numbers.size() == 2) {
-      for (const std::size_t column : numbers) {
-        const ColumnKinds& kinds = kinds_[column];
-        const bool is_called_so = contains_any(header_text(column), kMeterWords);
-        const bool are_ids = std::all_of(kinds.texts.begin(), kinds.texts.end(),
-                                         [](const std::string& t) { return csv::is_digits(t); });
-        if (!is_called_so || !are_ids || kinds.texts.size() * 3 > kinds.filled) continue;
+      if (!kinds.is_mostly(kinds.words) || is_column_of_times(kinds_[column])) continue;
+      const bool may_name = kinds.repeats() && !meanings.has(Meaning::status);
+      if (may_name && (is_called_so || (is_long && kinds.texts.size() > 1)))
         names.push_back(column);
-      }
-      for (const std::size_t column : names) std::erase(numbers, column);
     }
-    values_ = numbers;
-    if (names.empty() || numbers.size() != 1) {
+    if (names.empty()) names = numbered_;
+    if (names.empty()) take_short_numbers(names);
+    if (names.empty() || values_.size() != 1) {
       unit_of_all_ = unit_;
       unit_ = kNowhere;
       return;
     }
-    const auto called = std::find_if(names.begin(), names.end(), [&](std::size_t column) {
-      return contains_any(header_text(column), kMeterWords);
-    });
-    meter_ = called == names.end() ? names.front() : *called;
+    const auto rank = [&](std::size_t column) {
+      const Meanings meanings = meanings_at(column);
+      return (kinds_[column].texts.size() > 1 ? 0 : 4) + (meanings.has(Meaning::meter) ? 0 : 1) +
+             (meanings.has(Meaning::tariff) ? 2 : 0);
+    };
+    meter_ = *std::min_element(names.begin(), names.end(),
+                               [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
     guess_.shape.meter_column = column_text(meter_);
     if (unit_ != kNowhere) guess_.shape.unit_column = column_text(unit_);
   }
 
-  /// Counts cells with one meaning of their signs.
-  struct Signs {
-    std::size_t count = 0;
-    const KeptRow* row = nullptr;  ///< The latest of these.
-    std::string cell;
-
-    void add(const KeptRow& in, std::string_view text) {
-      ++count;
-      row = &in;
-      cell = text;
-    }
-  };
-
   Result<void> find_decimal() {
-    Signs points;
-    Signs commas;
-    Signs open_points;  // 1.234 may be about a thousand, or about one
-    Signs open_commas;
-    std::size_t plain = 0;
-    for (const KeptRow* row : data()) {
-      for (const std::size_t column : values_) {
-        const std::string_view cell = cell_of(*row, column);
-        const DecimalSigns signs = possible_decimal_signs(cell);
-        if (!signs.point && !signs.comma) continue;
-        const bool has_comma = cell.find(',') != std::string_view::npos;
-        if (!has_comma && cell.find('.') == std::string_view::npos) {
-          ++plain;
-        } else if (signs.point == signs.comma) {
-          (has_comma ? open_commas : open_points).add(*row, cell);
-        } else {
-          (signs.point ? points : commas).add(*row, cell);
-        }
-      }
+    std::vector<std::size_t> others;
+    for (std::size_t column = 0; column < width_; ++column) {
+      if (!why_[column].empty()) others.push_back(column);
     }
-    if (std::min(points.count, commas.count) * 100 > points.count + commas.count) {
-      return failure(ErrorCode::malformed,
-                     "its numbers change their decimal sign: " + row_words(*points.row) + " has " +
-                         csv::in_quotes(points.cell) + ", " + row_words(*commas.row) + " has " +
-                         csv::in_quotes(commas.cell));
-    }
-    if (points.count != commas.count) {
-      const Signs& decisive = points.count > commas.count ? points : commas;
-      guess_.shape.decimal = points.count > commas.count ? '.' : ',';
-      guess_.decimal_because =
-          "as in " + csv::in_quotes(decisive.cell) + ", " + row_words(*decisive.row);
-    } else {
-      guess_open_decimal(open_points, open_commas, plain);
-    }
+    const auto sign = TRY(guess_decimal(data(), values_, others));
+    guess_.shape.decimal = sign.decimal;
+    guess_.decimal_because = sign.because;
     return {};
   }
 
-  /// Every cell has three digits after the sign. If it separated thousands, smaller values
-  /// would have no sign.
-  void guess_open_decimal(const Signs& points, const Signs& commas, std::size_t plain) {
-    guess_.shape.decimal = '.';
-    guess_.decimal_because = "no value shows it";
-    if (points.count + commas.count == 0) return;
-    const Signs& open = points.count > commas.count ? points : commas;
-    const bool is_comma = &open == &commas;
-    const bool is_decimal = 19 * plain <= open.count;
-    guess_.shape.decimal = is_comma == is_decimal ? ',' : '.';
-    guess_.decimal_because = "guessed from " + csv::in_quotes(open.cell) + ": " +
-                             (is_decimal ? "all values have three digits after the sign"
-                                         : "some values have no sign, so it sets thousands apart") +
-                             "; another number of digits would decide";
-  }
-
-  /// Temperatures, voltages, costs: numbers, but not a meter's.
-  [[nodiscard]] bool is_other_quantity(std::size_t column) const {
-    constexpr std::array<std::string_view, 22> kWords{
-        "temp",   "\xC2\xB0", "humid", "degc", "deg c",        "degf", "deg f",    "volt",
-        "ampere", "amps",     "kvar",  "kva",  "power factor", "(hz)", "pressure", "setpoint",
-        "%",      "dry_bulb", "co2",   "wind", "irradiance",   "price"};
-    const std::string_view header = header_text(column);
-    return split_unit(header).unit.empty() && contains_any(header, kWords);
-  }
-
   Result<void> list_values() {
+    above_ = unit_above(std::span{rows_}.first(header_.above));
     for (std::size_t column = 0; column < width_; ++column) {
-      if (column == time_ || column == clock_ || column == meter_ || column == unit_) continue;
+      if (column == times_.column || column == clock_ || column == meter_ || column == unit_) {
+        continue;
+      }
       const std::string text = column_text(column);
       if (std::find(values_.begin(), values_.end(), column) != values_.end()) {
-        if (is_other_quantity(column)) {
-          guess_.ignored.push_back(printable(text) + " (no energy)");
-        } else {
-          add_value(column, text);
-        }
-      } else if (kinds_[column].filled > 0) {
+        add_value(column, text);
+      } else if (!why_[column].empty()) {
+        guess_.ignored.push_back(printable(text) + " (" + why_[column] + ")");
+      } else if (kinds_[column].filled > 0 && column != unit_of_all_) {
         const bool is_mixed = kinds_[column].numbers > 0;
-        guess_.ignored.push_back(printable(text) +
-                                 (is_mixed ? " (numbers among text)" : " (text)"));
-      } else if (!header_text(column).empty()) {
+        const bool are_times = is_column_of_times(kinds_[column]);
+        guess_.ignored.push_back(printable(text) + (are_times  ? " (times)"
+                                                    : is_mixed ? " (numbers among text)"
+                                                               : " (text)"));
+      } else if (!header_text(column).empty() && column != unit_of_all_) {
         guess_.ignored.push_back(printable(text) + " (empty)");
       }
     }
     if (!guess_.values.empty()) return {};
-    std::string columns;
-    for (const std::string& one : guess_.ignored) columns += (columns.empty() ? "" : ", ") + one;
-    return failure(ErrorCode::malformed, "beside the times in " +
-                                             csv::in_quotes(guess_.shape.time_column) +
-                                             " no column has numbers" +
-                                             (columns.empty() ? "" : "; there are " + columns));
+    return failure(ErrorCode::malformed, no_numbers());
+  }
+
+  [[nodiscard]] std::string no_numbers() const {
+    std::string words = "beside the times in " + csv::in_quotes(guess_.shape.time_column) +
+                        " no column has numbers of a meter";
+    std::size_t shown = 0;
+    for (std::size_t column = 0; column < width_ && shown < 6; ++column) {
+      if (column == times_.column || column == clock_) continue;
+      const auto filled = std::find_if(data().begin(), data().end(), [&](const KeptRow* row) {
+        return !cell_of(*row, column).empty();
+      });
+      if (filled == data().end()) continue;
+      words += (shown++ == 0 ? "; there are " : ", ") + csv::in_quotes(column_text(column)) + " (" +
+               (why_[column].empty() ? "text" : why_[column]) + ", such as " +
+               csv::in_quotes(cell_of(**filled, column).substr(0, 40)) + " in " +
+               row_words(**filled) + ")";
+    }
+    return words;
   }
 
   void add_value(std::size_t column, const std::string& text) {
-    const NameAndUnit parts = split_unit(header_text(column));
-    GuessedColumn value{parts.name, text, parts.unit};
-    if (units_ != nullptr) {
-      const std::string_view cell = cell_of(*units_, column);
-      const std::string inside = split_unit(cell).unit;
-      if (!cell.empty()) value.unit = inside.empty() ? std::string{cell} : inside;
+    const NameAndUnit parts = split_unit(full_text(column));
+    GuessedColumn value{parts.name, text, parts.unit, "as the header says"};
+    const auto say = [&](std::string unit, std::string because) {
+      if (unit.empty()) return;
+      value.unit = std::move(unit);
+      value.unit_because = std::move(because);
+    };
+    if (header_.units != nullptr) {
+      say(split_unit(text_below(column)).unit, "as " + row_words(*header_.units) + " says");
+    }
+    const ColumnKinds& kinds = kinds_[column];
+    if (2 * kinds.with_unit >= kinds.numbers && kinds.with_unit > 0) {
+      const auto most =
+          std::max_element(kinds.units.begin(), kinds.units.end(),
+                           [](const auto& a, const auto& b) { return a.second < b.second; });
+      say(most->first, "as its cells say");
     }
     if (value.unit.empty() && unit_of_all_ != kNowhere && kinds_[unit_of_all_].texts.size() == 1) {
-      value.unit = *kinds_[unit_of_all_].texts.begin();
+      say(*kinds_[unit_of_all_].texts.begin(),
+          "as column " + csv::in_quotes(column_text(unit_of_all_)) + " says");
     }
+    if (value.unit.empty()) {
+      say(above_.unit, "as row " + std::to_string(above_.row) + " says");
+    }
+    if (value.unit.empty()) value.unit_because.clear();
     guess_.values.push_back(std::move(value));
+  }
+
+  /// The commonest step between the times of rows.
+  [[nodiscard]] seconds usual_step() const {
+    std::set<Instant> times;
+    for (const KeptRow* row : data()) {
+      const auto stamp = parse_stamp(cell_of(*row, times_.column), guess_.shape.time_format);
+      if (!stamp) continue;
+      Instant time = stamp->clock;
+      if (clock_ != kNowhere) {
+        const auto clock = parse_clock(cell_of(*row, clock_));
+        if (!clock) continue;
+        time += clock->time;
+      }
+      times.insert(time);
+    }
+    if (guess_.shape.interval.count() > 0) return guess_.shape.interval;
+    std::map<seconds, int> steps;
+    for (auto at = times.begin(); at != times.end() && std::next(at) != times.end(); ++at) {
+      ++steps[*std::next(at) - *at];
+    }
+    const auto most =
+        std::max_element(steps.begin(), steps.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == steps.end() ? seconds{0} : most->first;
+  }
+
+  /// kW beside kWh of one load would count it twice.
+  void leave_out_same_loads() {
+    if (guess_.values.size() < 2 || meter_ != kNowhere) return;
+    std::vector<LoadColumn> loads;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      LoadColumn load{guess_.values[i].name, guess_.values[i].unit, {}};
+      for (const KeptRow* row : data()) {
+        const NumberAndUnit parts = split_number(cell_of(*row, values_[i]));
+        load.values.push_back(parse_cell(parts.number, guess_.shape.decimal).value_or(NAN));
+      }
+      loads.push_back(std::move(load));
+    }
+    const seconds step = usual_step();
+    std::vector<GuessedColumn> kept;
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const auto same = same_load_of(loads, i, step);
+      if (!same) {
+        kept.push_back(guess_.values[i]);
+        continue;
+      }
+      const std::string of = csv::in_quotes(guess_.values[same->as].column);
+      guess_.ignored.push_back(printable(guess_.values[i].column) + " (the load of " + of + ")");
+      if (same->agrees) continue;
+      guess_.notes.push_back(csv::in_quotes(guess_.values[i].column) + " is named as the load of " +
+                             of + ", which is taken, but is not its mean: see " +
+                             row_words(*data()[same->row]) + ".");
+    }
+    guess_.values = std::move(kept);
   }
 
   std::vector<const KeptRow*> rows_;  ///< Rows that are not blank.
   std::size_t width_ = 0;
-  std::size_t time_ = kNowhere;
+  TimeColumn times_;
+  HeaderRows header_;
+  UnitAbove above_;
   std::size_t clock_ = kNowhere;
   std::size_t meter_ = kNowhere;
   std::size_t unit_ = kNowhere;         ///< Of a long table.
   std::size_t unit_of_all_ = kNowhere;  ///< Of any other table.
-  std::size_t data_ = 0;                ///< First row with a time.
-  bool is_counted_ = false;
-  const KeptRow* header_ = nullptr;
-  const KeptRow* units_ = nullptr;
   std::vector<ColumnKinds> kinds_;
+  std::vector<std::string> why_;  ///< Of columns of numbers: why they are no meter's.
   std::vector<std::size_t> values_;
+  std::vector<std::size_t> numbered_;  ///< Columns of identifiers that may name meters.
   TableGuess guess_;
 };
+
+/// How often a sign stands outside quotes.
+std::ptrdiff_t signs_outside_quotes(std::string_view line, char sign) {
+  std::ptrdiff_t count = 0;
+  bool is_inside = false;
+  for (const char c : line) {
+    if (c == '"') is_inside = !is_inside;
+    if (c == sign && !is_inside) ++count;
+  }
+  return count;
+}
 
 }  // namespace
 
@@ -555,63 +632,29 @@ Result<Container> guess_container(std::string_view first_bytes) {
 }
 
 char guess_separator(std::span<const std::string> lines) {
-  // If several signs fit equally well, the one that is rarer in text wins:
-  // "1,5;2,5" is two numbers.
-  for (const char sign : {'\t', ';', '|', ','}) {
-    std::map<std::ptrdiff_t, std::size_t> counts;
-    std::size_t filled = 0;
-    for (const std::string& line : lines) {
-      if (csv::trimmed(line).empty()) continue;
-      ++filled;
-      const auto count = std::count(line.begin(), line.end(), sign);
-      if (count > 0) ++counts[count];
-    }
-    for (const auto& [count, times] : counts) {
-      if (static_cast<double>(times) >= 0.7 * static_cast<double>(filled)) return sign;
+  constexpr std::string_view kDirective = "sep=";
+  if (!lines.empty() && lines.front().size() == kDirective.size() + 1 &&
+      to_lower(lines.front()).substr(0, kDirective.size()) == kDirective) {
+    return lines.front().back();
+  }
+  // If several signs fit equally well, the one that is rarer in text wins: "1,5;2,5" is two
+  // numbers. The lines above a table do not count: of the others a half has to be alike.
+  for (const double share : {0.7, 0.4}) {
+    for (const char sign : {'\t', ';', '|', ','}) {
+      std::map<std::ptrdiff_t, std::size_t> counts;
+      std::size_t filled = 0;
+      for (const std::string& line : lines) {
+        if (csv::trimmed(line).empty()) continue;
+        ++filled;
+        const auto count = signs_outside_quotes(line, sign);
+        if (count > 0) ++counts[count];
+      }
+      for (const auto& [count, times] : counts) {
+        if (static_cast<double>(times) >= share * static_cast<double>(filled)) return sign;
+      }
     }
   }
   return ',';
-}
-
-bool is_unit(std::string_view text) {
-  if (text.empty() || text.size() > 20) return false;
-  constexpr std::array kUtilities{metering::Utility::electricity, metering::Utility::gas,
-                                  metering::Utility::steam};
-  const metering::UnitFactors factors{.gas_kWh_per_m3 = 10.0};
-  return std::any_of(kUtilities.begin(), kUtilities.end(), [&](metering::Utility utility) {
-    return metering::find_unit(text, utility, factors).has_value();
-  });
-}
-
-NameAndUnit split_unit(std::string_view header) {
-  const std::string_view text = csv::trimmed(header);
-  for (const auto& [open, close] : {std::pair{'(', ')'}, std::pair{'[', ']'}}) {
-    const std::size_t end = text.rfind(close);
-    const std::size_t begin = text.rfind(open);
-    if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) continue;
-    const std::string_view unit = csv::trimmed(text.substr(begin + 1, end - begin - 1));
-    if (!is_unit(unit)) continue;
-    std::string name{csv::trimmed(text.substr(0, begin))};
-    if (const std::string_view rest = csv::trimmed(text.substr(end + 1)); !rest.empty()) {
-      name += (name.empty() ? "" : " ") + std::string{rest};
-    }
-    return {name, std::string{unit}};
-  }
-  if (is_unit(text)) return {"", std::string{text}};
-  // Take the longest ending that is a unit: "ton-hours", not "hours". A single letter is more often
-  // a wing or a storey than watts.
-  constexpr std::string_view kSigns = " _,;:-";
-  for (std::size_t cut = text.find_first_of(kSigns); cut != std::string_view::npos;
-       cut = text.find_first_of(kSigns, cut + 1)) {
-    const std::string_view unit = csv::trimmed(text.substr(cut + 1));
-    if (cut == 0 || unit.size() < 2 || !is_unit(unit)) continue;
-    std::string_view name = text.substr(0, cut);
-    while (!name.empty() && kSigns.find(name.back()) != std::string_view::npos) {
-      name.remove_suffix(1);
-    }
-    return {std::string{name}, std::string{unit}};
-  }
-  return {std::string{text}, ""};
 }
 
 }  // namespace recald::table

@@ -9,18 +9,14 @@
 #include <string_view>
 #include <vector>
 
+#include "adapters/table/column_kinds.hpp"
+#include "adapters/table/header_units.hpp"
 #include "adapters/table/row_source.hpp"
 #include "adapters/table/table_shape.hpp"
 
 namespace recald::table {
 
 inline constexpr std::size_t kSniffedRows = 2000;  ///< The guess is based on these.
-
-/// A row that is kept.
-struct KeptRow {
-  std::uint64_t number;
-  std::vector<std::string> cells;  ///< UTF-8.
-};
 
 /// What somebody says of a table; nothing of that is guessed.
 struct TableHints {
@@ -33,9 +29,10 @@ struct TableHints {
 };
 
 struct GuessedColumn {
-  std::string name;    ///< As in the header, without the unit.
-  std::string column;  ///< How a site file names it: the header's text, or "#3".
-  std::string unit;    ///< Empty: neither the header nor a row of units gives it.
+  std::string name;          ///< As in the header, without the unit.
+  std::string column;        ///< How a site file names it: the header's text, or "#3".
+  std::string unit;          ///< Empty: nothing says it.
+  std::string unit_because;  ///< "as the header says"; where it is from.
 };
 
 /// A guessed shape, with a short reason for each part.
@@ -43,10 +40,16 @@ struct TableGuess {
   TableShape shape;
   std::vector<GuessedColumn> values;  ///< One column per meter, or the values of a long table.
   std::vector<std::string> ignored;   ///< Unused columns: "Status (text)".
+  std::vector<std::string> notes;     ///< A sentence each, on what else was decided.
   std::string time_format_because;
   bool is_time_format_open = false;  ///< Day or month first: the data do not tell.
   std::string decimal_because;
-  bool has_offsets = false;  ///< Stamps include their offset from UTC.
+  bool has_offsets = false;           ///< Stamps include their offset from UTC.
+  std::optional<csv::Stamps> stamps;  ///< What a stamp marks, if that is certain.
+  std::string stamps_because;
+  /// Labels of the clock column count to this many in a day, and `read_clock_labels` has to tell
+  /// what they count. 0: its times are those of a clock.
+  int labels_a_day = 0;
 };
 
 /// Finds header, times, numbers, meters and units in the first rows of a table.
@@ -61,15 +64,5 @@ struct TableGuess {
 
 /// The separator that splits most of a text's first lines into the same number of cells.
 [[nodiscard]] char guess_separator(std::span<const std::string> lines);
-
-/// "Main (kWh)", "Main [kWh]", "Main kWh", "Main_kWh" as name and unit; the unit may be empty.
-struct NameAndUnit {
-  std::string name;
-  std::string unit;
-};
-[[nodiscard]] NameAndUnit split_unit(std::string_view header);
-
-/// Whether a text is a possible unit of a meter.
-[[nodiscard]] bool is_unit(std::string_view text);
 
 }  // namespace recald::table

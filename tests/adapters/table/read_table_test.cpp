@@ -197,6 +197,131 @@ TEST(ReadTable, Utf16AndLatin1AreUnderstood) {
   EXPECT_EQ(outcome.readings.size(), 2u);
 }
 
+TEST(ReadTable, AFirstColumnWithoutAName) {
+  TableShape shape{.separator = ',', .time_column = "#1"};
+  const Outcome outcome = read(
+      "Export;of a notebook\n,main_kWh,ahu_kWh\n2025-09-01 00:00:00+02:00,2.5,0.5\n"
+      "2025-09-01 00:15:00+02:00,2.5,0.5\n,main_kWh,ahu_kWh\n2025-09-01 00:30:00+02:00,3,1\n",
+      shape, {column("main_kWh"), column("ahu_kWh")});
+  ASSERT_TRUE(outcome.report.has_value()) << outcome.report.error().message;
+  ASSERT_EQ(outcome.readings.size(), 6u);
+  EXPECT_EQ(outcome.report->issues.total, 0u);
+  EXPECT_EQ(metering::to_string(outcome.readings[0].start), "2025-08-31T22:00:00Z");
+}
+
+// A row without a time, as a sum below the table has none, is no header though that has no name.
+TEST(ReadTable, ASumWithoutATimeIsRefused) {
+  TableShape shape{.separator = ',', .time_column = "#1"};
+  const Outcome outcome =
+      read(",main_kWh\n2025-09-01 00:00:00Z,2.5\n2025-09-01 00:15:00Z,2.5\n,5\n", shape,
+           {column("main_kWh")});
+  EXPECT_EQ(outcome.readings.size(), 2u);
+  EXPECT_EQ(outcome.report->issues.total, 1u);
+}
+
+TEST(ReadTable, NamesMayHaveLineBreaksAndWideBlanks) {
+  TableShape shape{.separator = ',', .time_column = "Time", .time_format = TimeFormat::month_first};
+  const Outcome outcome = read(
+      "Time,\"Main meter\n(kW)\",AHU\xC2\xA0"
+      "1\n09/01/2025 00:00,1,2\n09/01/2025 00:30,1,2\n",
+      shape, {column("Main meter (kW)", "kW"), column("AHU 1", "kW")});
+  ASSERT_TRUE(outcome.report.has_value()) << outcome.report.error().message;
+  EXPECT_EQ(outcome.readings.size(), 4u);
+}
+
+TEST(ReadTable, CellsMayHaveTheirOwnUnits) {
+  TableShape shape{.separator = ',', .time_column = "Time"};
+  const Outcome outcome = read(
+      "Time,Main\n2025-09-01 00:00,980 W\n2025-09-01 00:30,1.25 kW\n2025-09-01 01:00,2\n"
+      "2025-09-01 01:30,0.5 MW\n2025-09-01 02:00,7 parsecs\n2025-09-01 02:30,{fault}\n",
+      shape, {column("Main", "kW")});
+  ASSERT_TRUE(outcome.report.has_value());
+  ASSERT_EQ(outcome.readings.size(), 5u);
+  for (const auto& [index, kW] : {std::pair{0, 0.98}, {1, 1.25}, {2, 2.0}, {3, 500.0}}) {
+    EXPECT_DOUBLE_EQ(outcome.readings[static_cast<std::size_t>(index)].mean_kW, kW);
+  }
+  EXPECT_TRUE(std::isnan(outcome.readings[4].mean_kW));
+  ASSERT_EQ(outcome.report->issues.total, 1u);
+  EXPECT_THAT(outcome.report->issues.listed[0].reason, HasSubstr("'7 parsecs' is no number"));
+  EXPECT_EQ(outcome.clock.words, 1u);
+  EXPECT_EQ(outcome.clock.first_word, "{fault}");
+}
+
+TEST(ReadTable, LettersOfAZoneTellTheDoubledHourApart) {
+  TableShape shape{.separator = ',', .time_column = "Time", .time_format = TimeFormat::day_first};
+  const std::string rows =
+      "Time,Main\n02-Nov-25 12:30:00 AM EDT,1\n02-Nov-25 01:00:00 AM EDT,2\n"
+      "02-Nov-25 01:30:00 AM EDT,3\n02-Nov-25 01:00:00 AM EST,4\n02-Nov-25 01:30:00 AM EST,5\n";
+  const Outcome outcome = read(rows, shape, {column("Main")}, "America/New_York");
+  ASSERT_EQ(outcome.readings.size(), 5u);
+  EXPECT_EQ(outcome.clock.naive, 0u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(outcome.readings[i].start,
+              outcome.readings[0].start + std::chrono::minutes{30} * static_cast<int>(i));
+  }
+  // EST is also Sydney's: five hours behind UTC would be wrong there.
+  const Outcome far = read(rows, shape, {column("Main")}, "Australia/Sydney");
+  EXPECT_EQ(far.readings.size(), 0u);
+  EXPECT_THAT(far.report->issues.listed.at(0).reason,
+              HasSubstr("stand for UTC-04:00, far from Australia/Sydney"));
+}
+
+/// Hours of a day with their labels, "label;hour number from 1".
+std::string labelled_day(const std::string& date, const std::vector<int>& labels) {
+  std::string rows;
+  int number = 0;
+  for (const int label : labels) {
+    rows += date + ";" + std::to_string(label) + ";" + std::to_string(++number) + "\n";
+  }
+  return rows;
+}
+
+// Days of 23 and 25 hours: by the count, and by the clock whose hour comes twice or not at all.
+TEST(ReadTable, LabelsOfHoursAreInstants) {
+  std::vector<int> count_25;
+  std::vector<int> count_23;
+  std::vector<int> clock_25;
+  std::vector<int> clock_23;
+  for (int label = 1; label <= 25; ++label) {
+    count_25.push_back(label);
+    if (label <= 23) count_23.push_back(label);
+    if (label <= 24 && label != 3) clock_23.push_back(label);
+    if (label <= 24) clock_25.push_back(label);
+    if (label == 3) clock_25.push_back(label);
+  }
+  TableShape shape{.separator = ';',
+                   .time_column = "Fecha",
+                   .clock_column = "Hora",
+                   .interval = std::chrono::hours{1},
+                   .time_format = TimeFormat::day_first};
+  for (const auto& [format, date, labels, first] :
+       {std::tuple{ClockFormat::interval_number, "26/10/2025", count_25, "2025-10-25T22:00:00Z"},
+        {ClockFormat::interval_number, "30/03/2025", count_23, "2025-03-29T23:00:00Z"},
+        {ClockFormat::hour_ending, "26/10/2025", clock_25, "2025-10-25T22:00:00Z"},
+        {ClockFormat::hour_ending, "30/03/2025", clock_23, "2025-03-29T23:00:00Z"}}) {
+    SCOPED_TRACE(date);
+    shape.clock_format = format;
+    const Outcome outcome = read("Fecha;Hora;kWh\n" + labelled_day(date, labels), shape,
+                                 {column("kWh")}, "Europe/Madrid");
+    ASSERT_EQ(outcome.readings.size(), labels.size());
+    EXPECT_EQ(metering::to_string(outcome.readings[0].start), first);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      EXPECT_EQ(outcome.readings[i].start,
+                outcome.readings[0].start + std::chrono::hours{1} * static_cast<int>(i));
+      EXPECT_DOUBLE_EQ(outcome.readings[i].mean_kW, static_cast<double>(i + 1));
+    }
+  }
+  shape.clock_format = ClockFormat::interval_number;
+  const Outcome many = read("Fecha;Hora;kWh\n" + labelled_day("27/10/2025", count_25), shape,
+                            {column("kWh")}, "Europe/Madrid");
+  EXPECT_EQ(many.readings.size(), 24u);
+  EXPECT_THAT(many.report->issues.listed.at(0).reason, HasSubstr("number '25' is more than"));
+  shape.clock_format = ClockFormat::hour_ending;
+  const Outcome odd = read("Fecha;Hora;kWh\n27/10/2025;1;1\n27/10/2025;2;1\n27/10/2025;noon;1\n",
+                           shape, {column("kWh")}, "Europe/Madrid");
+  EXPECT_THAT(odd.report->issues.listed.at(0).reason, HasSubstr("'noon' in column 'Hora'"));
+}
+
 // The file cut at every byte: nothing is read that was not there.
 TEST(ReadTable, CutAnywhereItReadsWhatIsWhole) {
   const Outcome whole = read(kPortal, portal(), {column("Ost")});
