@@ -218,6 +218,18 @@ MeterConfig read_sensor(TomlReader& table, const SiteConfig& site, RegisterMaps&
   return config;
 }
 
+/// A clock column that counts does so by the meter's interval, and counts whole ones.
+void fit_clock_format(TomlReader& table, MeterConfig& config) {
+  table::TableShape& shape = config.table->shape;
+  if (shape.clock_format == table::ClockFormat::time) return;
+  shape.interval = config.interval.value_or(std::chrono::hours{1});
+  if (config.stamps == csv::Stamps::end) {
+    table.problem_at("stamps",
+                     "'stamps' is \"end\", but each number of a 'clock_column' stands for its whole "
+                     "interval; leave it out");
+  }
+}
+
 MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& maps) {
   MeterConfig config;
   metering::Meter& meter = config.meter;
@@ -267,6 +279,7 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   }
   if (!config.files.empty() && is_table(table, config.files.front())) {
     config.table = read_table_config(table, config.files.front(), meter.utility, config.units);
+    fit_clock_format(table, config);
   }
   if (auto peak = table.table("peak")) read_peak(*peak, meter.peak);
   if (auto counter = table.table("counter")) {

@@ -37,10 +37,24 @@ void require_unit(TomlReader& meter, const TableConfig& config, metering::Utilit
   if (!unit) meter.problem_at("unit", "'unit': " + unit.error().message);
 }
 
+/// What a column that counts hours or intervals counts.
+void read_clock_format(TomlReader& meter, table::TableShape& shape) {
+  const std::vector<std::string_view> formats{table::kClockFormats.begin(),
+                                              table::kClockFormats.end()};
+  const auto word = meter.word("clock_format", formats);
+  if (!word) return;
+  shape.clock_format =
+      static_cast<table::ClockFormat>(std::ranges::find(formats, *word) - formats.begin());
+  if (shape.clock_column.empty()) {
+    meter.problem_at("clock_format", "'clock_format' says what a 'clock_column' counts; name that");
+  }
+}
+
 void read_columns(TomlReader& meter, TableConfig& config) {
   table::TableShape& shape = config.shape;
   shape.time_column = meter.required_text("time_column");
   shape.clock_column = meter.text_or("clock_column", "");
+  read_clock_format(meter, shape);
   config.column = meter.required_text("column");
   shape.meter_column = meter.text_or("meter_column", "");
   shape.unit_column = meter.text_or("unit_column", "");

@@ -12,9 +12,11 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/line_reader.hpp"
 #include "adapters/table/cell_number.hpp"
+#include "adapters/table/clock_labels.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/green_button.hpp"
 #include "adapters/table/read_table.hpp"
+#include "adapters/table/words.hpp"
 #include "adapters/table/xlsx.hpp"
 #include "core/text/ascii.hpp"
 #include "daemon/site/replay/register_watch.hpp"
@@ -84,12 +86,21 @@ Result<std::vector<table::KeptRow>> head_of(const std::filesystem::path& file,
 Result<table::TableGuess> guess_text(const std::filesystem::path& file,
                                      const std::vector<std::string>& lines,
                                      const table::TableHints& hints) {
-  table::TableShape shape;
-  shape.separator = table::guess_separator(lines);
-  const auto head = TRY(head_of(file, shape));
-  auto guess = table::guess_table(head, hints);
-  if (guess) guess->shape.separator = shape.separator;
-  return guess;
+  const char likely = table::guess_separator(lines);
+  std::optional<Error> first;
+  for (const char separator : {likely, ';', '\t', ',', '|'}) {
+    if (first && separator == likely) continue;
+    table::TableShape shape;
+    shape.separator = separator;
+    const auto head = TRY(head_of(file, shape));
+    auto guess = table::guess_table(head, hints);
+    if (guess) {
+      guess->shape.separator = separator;
+      return guess;
+    }
+    if (!first) first = guess.error();
+  }
+  return tl::unexpected(*first);
 }
 
 /// The first sheet that has a table.
@@ -138,7 +149,7 @@ std::vector<SurveyedMeter> meters_of_columns(const table::TableGuess& guess,
   for (const table::GuessedColumn& value : guess.values) {
     std::string name = value.name;
     if (name.empty()) name = guess.values.size() == 1 ? file_stem : value.column;
-    meters.push_back(described(name, "", value.column, value.unit, "as the header says"));
+    meters.push_back(described(name, "", value.column, value.unit, value.unit_because));
   }
   return meters;
 }
@@ -179,7 +190,7 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
     const bool has_unit = unit_at && *unit_at < row.cells.size();
     meters.push_back(described(text, text, value.column,
                                has_unit ? table::utf8_of(row.cells[*unit_at]) : value.unit,
-                               has_unit ? "as its rows say" : "as the header says"));
+                               has_unit ? "as its rows say" : value.unit_because));
   }
   if (rows->error()) return tl::unexpected(*rows->error());
   return meters;
@@ -344,12 +355,6 @@ Result<void> require_sound(const SurveyedExport& survey, const WholeFile& whole)
   return {};
 }
 
-bool says(std::string_view text, std::initializer_list<std::string_view> words) {
-  const std::string lower = to_lower(text);
-  return std::ranges::any_of(
-      words, [&](std::string_view word) { return lower.find(word) != std::string::npos; });
-}
-
 /// A record that begins a day at midnight has the starts of its intervals, one that ends a day at
 /// midnight their ends.
 Guess<csv::Stamps> guess_stamps(const SurveyedExport& survey, const metering::TimeSpan& span,
@@ -358,11 +363,7 @@ Guess<csv::Stamps> guess_stamps(const SurveyedExport& survey, const metering::Ti
   if (survey.table->shape.container == Container::green_button) {
     return {csv::Stamps::start, "as Green Button feeds have it"};
   }
-  const std::string& column = survey.table->shape.time_column;
-  if (says(column, {"end", "until", "bis"})) return {csv::Stamps::end, "by the column's name"};
-  if (says(column, {"start", "begin", "from", "von", "ab "})) {
-    return {csv::Stamps::start, "by the column's name"};
-  }
+  if (survey.table->stamps) return {*survey.table->stamps, survey.table->stamps_because};
   const auto minute = [&](Instant t) { return calendar.local_time(t).minute_of_day; };
   const int step = static_cast<int>(interval.count() / 60);
   const Instant last = span.end - interval;
@@ -501,7 +502,12 @@ void apply_units(const SurveyHints& hints, SurveyedExport& survey) {
 }
 
 /// "timestamp_utc"
-bool is_called_utc(const std::string& column) { return says(column, {"utc", "gmt", "zulu"}); }
+bool is_called_utc(const std::string& column) {
+  const std::string text = table::folded(column);
+  return std::ranges::any_of(std::array{" utc ", " gmt ", " zulu "}, [&](const char* word) {
+    return text.find(word) != std::string::npos;
+  });
+}
 
 std::optional<seconds> first_offset(const std::filesystem::path& file,
                                     const table::TableGuess& guess) {
@@ -531,6 +537,41 @@ Result<std::vector<SurveyedMeter>> meters_of_own(const std::filesystem::path& fi
   as_table.shape.unit_column = "unit";
   as_table.values.push_back({"value", "value", ""});
   return meters_of_rows(file, as_table);
+}
+
+/// The only meter of a long table, if its rows name it by a number, is called as its values are.
+void name_by_values(const table::TableGuess& guess, std::vector<SurveyedMeter>& meters) {
+  if (meters.size() != 1 || guess.values.front().name.empty()) return;
+  const std::string& name = meters.front().name;
+  const auto figures = std::ranges::count_if(name, [](char c) { return c >= '0' && c <= '9'; });
+  constexpr int kFiguresOfNumber = 6;
+  if (figures < kFiguresOfNumber) return;
+  const SurveyedMeter as_number = std::move(meters.front());
+  meters.front() = described(guess.values.front().name, as_number.name_in_file, as_number.column,
+                             as_number.unit.value, as_number.unit.because);
+}
+
+/// What a clock column counts, which only the days of 23 and 25 hours show.
+Result<void> find_clock_format(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
+  if (!survey.table || survey.table->labels_a_day == 0) return {};
+  table::TableGuess& guess = *survey.table;
+  std::vector<std::string> values;
+  for (const table::GuessedColumn& value : guess.values) values.push_back(value.column);
+  const auto rows = TRY(table::open_rows(survey.files.front(), guess.shape));
+  const auto labels =
+      TRY(table::read_clock_labels(*rows, guess.shape, values, calendar, guess.shape.clock_format));
+  const bool was_clock = guess.shape.clock_format == table::ClockFormat::time;
+  guess.shape.clock_format = *labels.format;
+  survey.clock_format_because = labels.because;
+  if (*labels.format == table::ClockFormat::time) {
+    guess.shape.interval = seconds{0};
+    if (!was_clock) guess.stamps = csv::Stamps::end;
+    if (!was_clock) guess.stamps_because = labels.because;
+  } else {
+    guess.stamps = csv::Stamps::start;
+    guess.stamps_because = "a number stands for its whole interval";
+  }
+  return {};
 }
 
 Result<SurveyedExport> described_export(const std::filesystem::path& file,
@@ -564,6 +605,7 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file,
     auto meters = meters_of_rows(file, *guess);
     if (!meters) return about(file, meters.error());
     survey.meters = std::move(*meters);
+    name_by_values(*guess, survey.meters);
   }
   if (!guess->has_offsets && is_called_utc(guess->shape.time_column)) {
     guess->shape.timezone = "Etc/UTC";
@@ -572,6 +614,9 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file,
   if (!guess->ignored.empty()) {
     survey.notes.push_back(fmt::format("{}: columns not used: {}.", file.filename().string(),
                                        fmt::join(guess->ignored, ", ")));
+  }
+  for (const std::string& note : guess->notes) {
+    survey.notes.push_back(fmt::format("{}: {}", file.filename().string(), note));
   }
   survey.table = std::move(*guess);
   return survey;
@@ -605,6 +650,7 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
     clock = TRY(metering::LocalCalendar::open("Etc/UTC"));
     if (survey->table) survey->utc_offset = first_offset(file, *survey->table);
   }
+  if (auto found = find_clock_format(*survey, *clock); !found) return about(file, found.error());
   auto whole = read_whole(*survey, *clock);
   if (!whole) return about(file, whole.error());
   if (survey->table) {
@@ -623,6 +669,11 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   if (survey->meters.empty()) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("'{}': no meter has a value that can be used", file.string()));
+  }
+  if (whole->clock.words > 0) {
+    survey->notes.push_back(fmt::format("{}: {} cells such as {} count as no value.",
+                                        file.filename().string(), whole->clock.words,
+                                        csv::in_quotes(whole->clock.first_word)));
   }
   if (whole->report.issues.total > 0) {
     survey->notes.push_back(fmt::format("{}: {} of {} rows are refused or come twice; {}.",

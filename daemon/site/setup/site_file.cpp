@@ -164,6 +164,10 @@ void write_shape(const SurveyedExport& one, const SurveyedMeter& meter, Lines& l
   }
   lines.key("time_column", toml_text(shape.time_column));
   if (!shape.clock_column.empty()) lines.key("clock_column", toml_text(shape.clock_column));
+  if (shape.clock_format != table::ClockFormat::time) {
+    lines.key("clock_format", toml_text(table::to_string(shape.clock_format)),
+              one.clock_format_because);
+  }
   lines.key("time_format", toml_text(table::to_string(shape.time_format)),
             guess.time_format_because);
   if (!shape.timezone.empty()) lines.key("timezone", toml_text(shape.timezone), one.clock_because);

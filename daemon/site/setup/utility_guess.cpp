@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "adapters/table/words.hpp"
 #include "core/metering/units.hpp"
 #include "core/text/ascii.hpp"
 
@@ -12,46 +13,47 @@ namespace {
 
 using metering::Utility;
 
-struct Word {
-  std::string_view text;
+struct WordsOfUtility {
   Utility utility;
+  std::string_view words;  ///< Set apart by bars; a blank is where a word begins or ends.
 };
 
-/// The first that a name contains decides: chilled water is no water, a gas boiler's fuel is gas.
+/// The first that a name contains decides: a chiller's power is electricity, chilled water is no
+/// water, a gas boiler's fuel is gas. In the languages of `words.hpp`.
 constexpr std::array kWords{
-    Word{"chilled", Utility::chilled_water},
-    Word{"chw", Utility::chilled_water},
-    Word{"cooling", Utility::chilled_water},
-    Word{"k\xC3\xA4lte", Utility::chilled_water},
-    Word{"kaelte", Utility::chilled_water},
-    Word{"froid", Utility::chilled_water},
-    Word{"steam", Utility::steam},
-    Word{"dampf", Utility::steam},
-    Word{"vapeur", Utility::steam},
-    Word{"gas", Utility::gas},
-    Word{"gaz", Utility::gas},
-    Word{"heat", Utility::heating},
-    Word{"w\xC3\xA4rme", Utility::heating},
-    Word{"waerme", Utility::heating},
-    Word{"chaleur", Utility::heating},
-    Word{"hhw", Utility::heating},
-    Word{"hot water", Utility::heating},
-    Word{"hot_water", Utility::heating},
-    Word{"boiler", Utility::heating},
-    Word{"elec", Utility::electricity},
-    Word{"strom", Utility::electricity},
-    Word{"wirkarbeit", Utility::electricity},
-    Word{"power", Utility::electricity},
-    Word{"pv", Utility::electricity},
-    Word{"solar", Utility::electricity},
-    Word{"light", Utility::electricity},
-    Word{"water", Utility::water},
+    WordsOfUtility{Utility::heating, "waermestrom"},
+    WordsOfUtility{Utility::chilled_water, "kaeltestrom"},
+    WordsOfUtility{Utility::water, "volumenstrom"},
+    WordsOfUtility{Utility::electricity,
+                   "elec|elekt|elett|strom|stroom|saehkoe|sahko|wirkarbeit|wirkleistung|heat pump|"
+                   "heatpump|waermepumpe|pompe a chaleur|bomba de calor|pompa di calore|warmtepomp|"
+                   "varmepumpe|vaermepump|laempoepump|lampopump|pompa ciepla|bomba calor"},
+    WordsOfUtility{Utility::chilled_water,
+                   "chilled| chw|cooling|kaelte|kuehl|froid|refroidi| frio|refrigera|raffredd|"
+                   "freddo|koeling| koude|arrefec| kyla|kyla |jaeaehdy|jaahdy|chlod"},
+    WordsOfUtility{Utility::steam, "steam|dampf|vapeur| vapor|stoom| damp |aanga|hoeyry|hoyry| para "},
+    WordsOfUtility{Utility::gas, "gas|gaz|kaasu|metano"},
+    WordsOfUtility{Utility::heating,
+                   "heat|heiz|waerme|chaleur|chauff|hhw|hot water|warmwasser|eau chaude|boiler|"
+                   "calefac|calor|riscald|acqua calda|agua caliente|verwarm|warmte|aquec|varme|"
+                   "vaerme|laempoe|kaukolamp|cieplo|ogrzew"},
+    WordsOfUtility{Utility::electricity, "power|pv|solar|light|photovolt|fotovolt|beleucht"},
+    WordsOfUtility{Utility::water, "water|wasser| eau |agua |acqua| vand|vand |vatten| vesi| woda "},
 };
+
+bool has_one(std::string_view text, std::string_view words) {
+  for (;;) {
+    const std::size_t bar = words.find('|');
+    if (text.find(words.substr(0, bar)) != std::string_view::npos) return true;
+    if (bar == std::string_view::npos) return false;
+    words.remove_prefix(bar + 1);
+  }
+}
 
 std::optional<Utility> by_name(std::string_view name) {
-  const std::string lower = to_lower(name);
-  for (const Word& word : kWords) {
-    if (lower.find(word.text) != std::string::npos) return word.utility;
+  const std::string text = table::folded(name);
+  for (const WordsOfUtility& one : kWords) {
+    if (has_one(text, one.words)) return one.utility;
   }
   return {};
 }

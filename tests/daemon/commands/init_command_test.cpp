@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "../command_line.hpp"
+#include "adapters/table/table_shape.hpp"
 #include "tests/support/sample_exports.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -283,6 +284,86 @@ TEST_F(Init, AClockThatIsNeverChanged) {
   ASSERT_EQ(init("winter.csv", "Europe/Berlin").exit_code, kSuccess);
   EXPECT_THAT(read_text(site()), HasSubstr("timezone = \"Etc/GMT-1\""));
   expect_months(replayed().at("load"), truth, 1.0);
+}
+
+/// A table with a date and a number for each hour, counted as `format` says.
+std::string with_hour_numbers(const LocalCalendar& calendar, const ExportTruth& truth,
+                              table::ClockFormat format) {
+  std::string text = "cups;fecha;hora;consumo_kWh;precio\n";
+  std::string last_date;
+  int number = 0;
+  for (const auto& [start, value] : truth.intervals) {
+    const std::string date = clock_text(calendar, start, "%d/%m/%Y");
+    number = date == last_date ? number + 1 : 1;
+    last_date = date;
+    const int shown = std::stoi(clock_text(calendar, start, "%H")) + 1;
+    text += "ES0099000000000001XX;" + date + ";" +
+            std::to_string(format == table::ClockFormat::hour_ending ? shown : number) + ";" +
+            with_comma(value) + ";0,12\n";
+  }
+  return text;
+}
+
+// Both changes of the clock, spring's alone, and none: whatever is counted, each hour is where it
+// was.
+TEST_F(Init, HourNumbers) {
+  const LocalCalendar madrid = zone("Europe/Madrid");
+  int number = 0;
+  for (const auto& [first, last] : {std::pair{"2025-03-01", "2025-11-30"},
+                                    {"2025-03-01", "2025-04-30"},
+                                    {"2025-06-01", "2025-06-30"}}) {
+    for (const auto format :
+         {table::ClockFormat::hour_ending, table::ClockFormat::interval_number}) {
+      SCOPED_TRACE(std::string{first} + " " + std::string{to_string(format)});
+      const ExportTruth truth = made_up_use(madrid, {day(first), day(last), minutes{60}}, 11, 12.0);
+      const std::string name = "hours" + std::to_string(++number) + ".csv";
+      write_text(path(name), with_hour_numbers(madrid, truth, format));
+      std::filesystem::remove_all(path("site"));
+      const Outcome outcome = init(name, "Europe/Madrid");
+      ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+      const bool has_change = std::string{first} != "2025-06-01";
+      const auto written = has_change ? format : table::ClockFormat::interval_number;
+      EXPECT_THAT(read_text(site()),
+                  AllOf(HasSubstr("clock_format = \"" + std::string{to_string(written)} + "\""),
+                        HasSubstr("stamps = \"start\""), Not(HasSubstr("Etc/GMT"))));
+      EXPECT_THAT(outcome.out, HasSubstr("precio (money)"));
+      expect_months(replayed().at("consumo"), truth, 1.0);
+    }
+  }
+}
+
+// On the day of 23 hours all 24 have a value: nothing says which is too many.
+TEST_F(Init, HourNumbersThatNothingDecidesAreRefused) {
+  std::string text = "fecha;hora;consumo_kWh\n";
+  for (int date = 1; date <= 31; ++date) {
+    for (int hour = 1; hour <= 24; ++hour) {
+      text += (date < 10 ? "0" : "") + std::to_string(date) + "/03/2025;" + std::to_string(hour) +
+              ";1,5\n";
+    }
+  }
+  expect_refused(
+      "hours.csv", text,
+      "column 'hora' counts hours or intervals, but its labels on 2025-03-30, a day of 23 "
+      "hours, do not show what they count in Europe/Berlin");
+}
+
+// The letters of the zone tell the doubled hour apart, in a file that begins with the newest row
+// too.
+TEST_F(Init, LettersOfAZone) {
+  const LocalCalendar new_york = zone("America/New_York");
+  const ExportTruth truth =
+      made_up_use(new_york, {day("2025-10-01"), day("2025-11-30"), minutes{15}}, 12, 10.0);
+  std::string text = "Timestamp,Trend Flags,Status,Value (kW-hr)\n";
+  for (auto at = truth.intervals.rbegin(); at != truth.intervals.rend(); ++at) {
+    const Instant end = at->start + minutes{15};
+    const bool is_summer = new_york.utc_offset(end) == std::chrono::hours{-4};
+    text += clock_text(new_york, end, "%d-%b-%y %I:%M:%S %p") + (is_summer ? " EDT" : " EST") +
+            ",{ },{ok}," + with_point(at->value) + "\n";
+  }
+  write_text(path("history.csv"), text);
+  const Outcome outcome = init("history.csv", "America/New_York");
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  expect_months(replayed().at("value"), truth, 1.0);
 }
 
 // A meter after the other, each with its unit.

@@ -56,6 +56,27 @@ TEST(TableConfig, EveryKeyArrives) {
   EXPECT_EQ(config->column, "Use");
 }
 
+TEST(TableConfig, AClockColumnCountsByTheMetersInterval) {
+  const std::string rest =
+      "file = \"a.csv\"\ntime_column = \"t\"\ncolumn = \"v\"\nunit = \"kWh\"\n";
+  const auto numbered = table_of(
+      rest + "clock_column = \"h\"\nclock_format = \"interval_number\"\ninterval = \"15m\"\n");
+  ASSERT_TRUE(numbered.has_value());
+  EXPECT_EQ(numbered->shape.clock_format, table::ClockFormat::interval_number);
+  EXPECT_EQ(numbered->shape.interval, std::chrono::minutes{15});
+  EXPECT_EQ(
+      table_of(rest + "clock_column = \"h\"\nclock_format = \"hour_ending\"\n")->shape.interval,
+      std::chrono::hours{1});
+  EXPECT_EQ(table_of(rest + "clock_column = \"h\"\ninterval = \"15m\"\n")->shape.interval,
+            std::chrono::seconds{0});
+  EXPECT_THAT(parse(rest + "clock_format = \"hour_ending\"\n").error(),
+              ElementsAre(HasSubstr("says what a 'clock_column' counts")));
+  EXPECT_THAT(
+      parse(rest + "clock_column = \"h\"\nclock_format = \"hour_ending\"\nstamps = \"end\"\n")
+          .error(),
+      ElementsAre(HasSubstr("stands for its whole interval")));
+}
+
 TEST(TableConfig, WhatIsMissingOrTwiceIsSaid) {
   EXPECT_THAT(parse("file = \"a.csv\"\ndecimal = \",\"\n").error(),
               ElementsAre(HasSubstr("'time_column' is missing"), HasSubstr("'column' is missing"),
