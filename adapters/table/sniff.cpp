@@ -13,6 +13,7 @@
 #include "adapters/table/decimal_sign.hpp"
 #include "adapters/table/header_rows.hpp"
 #include "adapters/table/meter_columns.hpp"
+#include "adapters/table/read_table.hpp"
 #include "adapters/table/same_load.hpp"
 #include "adapters/table/time_column.hpp"
 #include "adapters/table/words.hpp"
@@ -34,7 +35,7 @@ std::string row_words(const KeptRow& row) { return "row " + std::to_string(row.n
 /// Builds up the guess step by step.
 class TableSniffer {
  public:
-  explicit TableSniffer(std::span<const KeptRow> rows) {
+  TableSniffer(std::span<const KeptRow> rows, const TableHints& hints) : hints_(hints) {
     for (const KeptRow& row : rows) {
       const bool is_filled = std::any_of(row.cells.begin(), row.cells.end(),
                                          [](const std::string& cell) { return !cell.empty(); });
@@ -45,7 +46,8 @@ class TableSniffer {
 
   Result<TableGuess> run() {
     if (rows_.empty()) return failure(ErrorCode::malformed, "it is empty");
-    const auto times = find_time_column(rows_, width_);
+    const auto told = TRY(told_time_column());
+    const auto times = find_time_column(rows_, width_, told);
     if (!times) return failure(ErrorCode::malformed, no_times());
     times_ = *times;
     kinds_ = kinds_of(data(), width_);
@@ -54,6 +56,7 @@ class TableSniffer {
     find_clock();
     TRY(find_time_format());
     find_meters();
+    TRY(take_told_columns());
     TRY(find_decimal());
     TRY(list_values());
     leave_out_same_loads();
@@ -61,6 +64,51 @@ class TableSniffer {
   }
 
  private:
+  static Error no_such_column(std::string_view column) {
+    return {ErrorCode::malformed, "it has no column " + csv::in_quotes(column) +
+                                      "; name one as its header has it, or as \"#3\""};
+  }
+
+  /// Before it is known where the header is. @return nothing where nobody says so
+  [[nodiscard]] Result<std::optional<std::size_t>> told_time_column() const {
+    const std::string& column = hints_.time_column;
+    if (column.empty()) return std::optional<std::size_t>{};
+    for (const KeptRow* row : rows_) {
+      if (const auto found = find_column(row->cells, column)) return found;
+    }
+    return tl::unexpected(no_such_column(column));
+  }
+
+  /// By the header, as a site file names it.
+  [[nodiscard]] Result<std::size_t> told_column(const std::string& column) const {
+    for (std::size_t i = 0; i < width_; ++i) {
+      if (column_text(i) == column || full_text(i) == column) return i;
+    }
+    if (const auto numbered = find_column({}, column); numbered && *numbered < width_) {
+      return *numbered;
+    }
+    return tl::unexpected(no_such_column(column));
+  }
+
+  Result<void> take_told_columns() {
+    if (!hints_.columns.empty()) {
+      values_.clear();
+      for (const std::string& column : hints_.columns) {
+        values_.push_back(TRY(told_column(column)));
+        why_[values_.back()].clear();
+      }
+      for (std::size_t i = 0; i < width_; ++i) {
+        const bool is_told = std::ranges::find(values_, i) != values_.end();
+        if (!is_told && why_[i].empty()) why_[i] = "left out, as told";
+      }
+    }
+    if (hints_.meter_column.empty()) return {};
+    meter_ = TRY(told_column(hints_.meter_column));
+    std::erase(values_, meter_);
+    guess_.shape.meter_column = column_text(meter_);
+    return {};
+  }
+
   [[nodiscard]] std::span<const KeptRow* const> data() const {
     return std::span{rows_}.subspan(times_.first_row);
   }
@@ -291,12 +339,16 @@ class TableSniffer {
     if (times_.is_counted) return take_counted();
     std::array<FormatTrial, 3> trials;
     for (std::size_t i = 0; i < 3; ++i) trials[i] = trial_of(kDateFormats[i]);
-    const auto best = static_cast<std::size_t>(
-        std::min_element(trials.begin(), trials.end(),
-                         [](const FormatTrial& a, const FormatTrial& b) {
-                           return a.wrong != b.wrong ? a.wrong < b.wrong : a.jumps < b.jumps;
-                         }) -
-        trials.begin());
+    const auto told = std::ranges::find(kDateFormats, hints_.dates.value_or(TimeFormat::unix));
+    const auto best = told != kDateFormats.end()
+                          ? static_cast<std::size_t>(told - kDateFormats.begin())
+                          : static_cast<std::size_t>(
+                                std::min_element(trials.begin(), trials.end(),
+                                                 [](const FormatTrial& a, const FormatTrial& b) {
+                                                   return a.wrong != b.wrong ? a.wrong < b.wrong
+                                                                             : a.jumps < b.jumps;
+                                                 }) -
+                                trials.begin());
     const FormatTrial& trial = trials[best];
     const std::string example = csv::in_quotes(cell_of(*data().front(), times_.column));
     if (100 * trial.wrong > trial.wrong + trial.read) {
@@ -314,7 +366,11 @@ class TableSniffer {
     }
     guess_.shape.time_format = kDateFormats[best];
     guess_.has_offsets = trial.with_offset == trial.read;
-    explain(trials, best, example);
+    if (told != kDateFormats.end()) {
+      guess_.time_format_because = "as told";
+    } else {
+      explain(trials, best, example);
+    }
     return {};
   }
 
@@ -431,6 +487,11 @@ class TableSniffer {
   }
 
   Result<void> find_decimal() {
+    if (hints_.decimal) {
+      guess_.shape.decimal = *hints_.decimal;
+      guess_.decimal_because = "as told";
+      return {};
+    }
     std::vector<std::size_t> others;
     for (std::size_t column = 0; column < width_; ++column) {
       if (!why_[column].empty()) others.push_back(column);
@@ -581,6 +642,7 @@ class TableSniffer {
   std::vector<std::string> why_;  ///< Of columns of numbers: why they are no meter's.
   std::vector<std::size_t> values_;
   std::vector<std::size_t> numbered_;  ///< Columns of identifiers that may name meters.
+  const TableHints& hints_;
   TableGuess guess_;
 };
 
@@ -597,8 +659,8 @@ std::ptrdiff_t signs_outside_quotes(std::string_view line, char sign) {
 
 }  // namespace
 
-Result<TableGuess> guess_table(std::span<const KeptRow> rows, const TableHints&) {
-  return TableSniffer{rows}.run();
+Result<TableGuess> guess_table(std::span<const KeptRow> rows, const TableHints& hints) {
+  return TableSniffer{rows, hints}.run();
 }
 
 Result<Container> guess_container(std::string_view first_bytes) {

@@ -52,9 +52,11 @@ int rank_of(std::string_view header) {
   return meanings.has(Meaning::to) ? 2 : 1;
 }
 
-std::optional<TimeColumn> find_dated(std::span<const KeptRow* const> rows, std::size_t width) {
+std::optional<TimeColumn> find_dated(std::span<const KeptRow* const> rows, std::size_t width,
+                                     std::optional<std::size_t> told) {
   std::vector<Candidate> candidates;
   for (std::size_t column = 0; column < width; ++column) {
+    if (told && column != *told) continue;
     const auto first = first_of_data(rows, column);
     if (!first) continue;
     std::set<std::string_view> different;
@@ -158,10 +160,11 @@ std::string_view text_above(std::span<const KeptRow* const> rows, std::size_t fi
   return {};
 }
 
-std::optional<TimeColumn> find_time_column(std::span<const KeptRow* const> rows,
-                                           std::size_t width) {
-  if (auto dated = find_dated(rows, width)) return dated;
+std::optional<TimeColumn> find_time_column(std::span<const KeptRow* const> rows, std::size_t width,
+                                           std::optional<std::size_t> told) {
+  if (auto dated = find_dated(rows, width, told)) return dated;
   for (std::size_t column = 0; column < width; ++column) {
+    if (told && column != *told) continue;
     if (auto counted = find_counted(rows, column)) return counted;
   }
   return {};

@@ -20,8 +20,10 @@ struct TimeColumn {
 
 /// Of several columns with times: one that changes, rather that of starts than of ends.
 /// @param rows  Without blank ones.
+/// @param told  The only column that may have them, if somebody says so.
 [[nodiscard]] std::optional<TimeColumn> find_time_column(std::span<const KeptRow* const> rows,
-                                                         std::size_t width);
+                                                         std::size_t width,
+                                                         std::optional<std::size_t> told = {});
 
 /// The last text of a column above a row: its header, if there is one.
 [[nodiscard]] std::string_view text_above(std::span<const KeptRow* const> rows,
