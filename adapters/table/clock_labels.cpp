@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/cell_number.hpp"
+#include "adapters/table/cells/cell_number.hpp"
+#include "adapters/table/cells/stamp_parts.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/read_table.hpp"
-#include "adapters/table/stamp_parts.hpp"
 
 namespace recald::table {
 namespace {

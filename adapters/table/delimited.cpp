@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/words.hpp"
 
 namespace recald::table {
 namespace {

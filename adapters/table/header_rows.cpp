@@ -4,8 +4,8 @@
 #include <set>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/header_units.hpp"
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/header_units.hpp"
+#include "adapters/table/cells/words.hpp"
 #include "core/text/ascii.hpp"
 
 namespace recald::table {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/header_units.hpp"
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/header_units.hpp"
+#include "adapters/table/cells/words.hpp"
 
 namespace recald::table {
 namespace {

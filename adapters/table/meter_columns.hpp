@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "adapters/table/column_kinds.hpp"
+#include "adapters/table/cells/column_kinds.hpp"
 
 namespace recald::table {
 

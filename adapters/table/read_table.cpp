@@ -9,7 +9,7 @@
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/reading_intake.hpp"
-#include "adapters/table/cell_number.hpp"
+#include "adapters/table/cells/cell_number.hpp"
 #include "adapters/table/clock_labels.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/header_rows.hpp"

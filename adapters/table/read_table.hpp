@@ -32,8 +32,8 @@ struct ClockFacts {
   std::uint64_t naive = 0;    ///< Stamps without an offset.
   std::uint64_t skipped = 0;  ///< Of these, times that the clock skips.
   std::map<metering::Day, ClockChange> changes;
-  std::uint64_t words = 0;    ///< Cells with a word for no value, such as "n/a".
-  std::string first_word;     ///< The first of them.
+  std::uint64_t words = 0;  ///< Cells with a word for no value, such as "n/a".
+  std::string first_word;   ///< The first of them.
 
   void add_word(std::string_view word) {
     if (words++ == 0) first_word = word;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/words.hpp"
 #include "core/metering/units.hpp"
 
 namespace recald::table {

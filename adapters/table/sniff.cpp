@@ -8,15 +8,15 @@
 #include <set>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/cell_number.hpp"
+#include "adapters/table/cells/cell_number.hpp"
+#include "adapters/table/cells/decimal_sign.hpp"
+#include "adapters/table/cells/words.hpp"
 #include "adapters/table/clock_labels.hpp"
-#include "adapters/table/decimal_sign.hpp"
 #include "adapters/table/header_rows.hpp"
 #include "adapters/table/meter_columns.hpp"
 #include "adapters/table/read_table.hpp"
 #include "adapters/table/same_load.hpp"
 #include "adapters/table/time_column.hpp"
-#include "adapters/table/words.hpp"
 #include "core/text/ascii.hpp"
 #include "core/text/printable.hpp"
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "adapters/table/column_kinds.hpp"
-#include "adapters/table/header_units.hpp"
+#include "adapters/table/cells/column_kinds.hpp"
+#include "adapters/table/cells/header_units.hpp"
 #include "adapters/table/row_source.hpp"
 #include "adapters/table/table_shape.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adapters/csv/readings_csv.hpp"
-#include "adapters/table/stamps.hpp"
+#include "adapters/table/cells/stamps.hpp"
 
 namespace recald::table {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "adapters/table/cell_number.hpp"
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/cell_number.hpp"
+#include "adapters/table/cells/words.hpp"
 
 namespace recald::table {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "adapters/table/column_kinds.hpp"
-#include "adapters/table/stamps.hpp"
+#include "adapters/table/cells/column_kinds.hpp"
+#include "adapters/table/cells/stamps.hpp"
 
 namespace recald::table {
 

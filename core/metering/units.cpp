@@ -166,7 +166,8 @@ std::string plain(std::string_view text) {
 
 /// A kilowatt hour in other languages, normalised by `plain`: they begin alike and end in an hour.
 bool is_kilowatt_hour(std::string_view spelling) {
-  constexpr std::array<std::string_view, 4> kKilowatts{"kilowat", "kilovat", "chilowat", "quilowat"};
+  constexpr std::array<std::string_view, 4> kKilowatts{"kilowat", "kilovat", "chilowat",
+                                                       "quilowat"};
   constexpr std::array<std::string_view, 8> kHours{"stunde", "heure", "uur",    "time",
                                                    "timm",   "tunti", "godzin", "ora"};
   const auto begins = [&](std::string_view kilowatt) {

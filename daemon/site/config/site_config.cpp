@@ -224,9 +224,10 @@ void fit_clock_format(TomlReader& table, MeterConfig& config) {
   if (shape.clock_format == table::ClockFormat::time) return;
   shape.interval = config.interval.value_or(std::chrono::hours{1});
   if (config.stamps == csv::Stamps::end) {
-    table.problem_at("stamps",
-                     "'stamps' is \"end\", but each number of a 'clock_column' stands for its whole "
-                     "interval; leave it out");
+    table.problem_at(
+        "stamps",
+        "'stamps' is \"end\", but each number of a 'clock_column' stands for its whole "
+        "interval; leave it out");
   }
 }
 

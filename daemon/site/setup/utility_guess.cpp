@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/words.hpp"
 #include "core/metering/units.hpp"
 #include "core/text/ascii.hpp"
 
@@ -31,14 +31,16 @@ constexpr std::array kWords{
     WordsOfUtility{Utility::chilled_water,
                    "chilled| chw|cooling|kaelte|kuehl|froid|refroidi| frio|refrigera|raffredd|"
                    "freddo|koeling| koude|arrefec| kyla|kyla |jaeaehdy|jaahdy|chlod"},
-    WordsOfUtility{Utility::steam, "steam|dampf|vapeur| vapor|stoom| damp |aanga|hoeyry|hoyry| para "},
+    WordsOfUtility{Utility::steam,
+                   "steam|dampf|vapeur| vapor|stoom| damp |aanga|hoeyry|hoyry| para "},
     WordsOfUtility{Utility::gas, "gas|gaz|kaasu|metano"},
     WordsOfUtility{Utility::heating,
                    "heat|heiz|waerme|chaleur|chauff|hhw|hot water|warmwasser|eau chaude|boiler|"
                    "calefac|calor|riscald|acqua calda|agua caliente|verwarm|warmte|aquec|varme|"
                    "vaerme|laempoe|kaukolamp|cieplo|ogrzew"},
     WordsOfUtility{Utility::electricity, "power|pv|solar|light|photovolt|fotovolt|beleucht"},
-    WordsOfUtility{Utility::water, "water|wasser| eau |agua |acqua| vand|vand |vatten| vesi| woda "},
+    WordsOfUtility{Utility::water,
+                   "water|wasser| eau |agua |acqua| vand|vand |vatten| vesi| woda "},
 };
 
 bool has_one(std::string_view text, std::string_view words) {

@@ -1,4 +1,4 @@
-#include "adapters/table/cell_number.hpp"
+#include "adapters/table/cells/cell_number.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "adapters/table/header_units.hpp"
+#include "adapters/table/cells/header_units.hpp"
 
 #include <gtest/gtest.h>
 

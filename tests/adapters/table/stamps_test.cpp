@@ -1,4 +1,4 @@
-#include "adapters/table/stamps.hpp"
+#include "adapters/table/cells/stamps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "adapters/table/stamps.hpp"
+#include "adapters/table/cells/stamps.hpp"
 
 namespace recald::table {
 

@@ -1,4 +1,4 @@
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/words.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "adapters/table/column_kinds.hpp"
+#include "adapters/table/cells/column_kinds.hpp"
 #include "core/result.hpp"
 
 namespace recald::table {

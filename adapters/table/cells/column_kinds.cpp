@@ -1,13 +1,13 @@
-#include "adapters/table/column_kinds.hpp"
+#include "adapters/table/cells/column_kinds.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <optional>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/cell_number.hpp"
-#include "adapters/table/header_units.hpp"
-#include "adapters/table/stamps.hpp"
+#include "adapters/table/cells/cell_number.hpp"
+#include "adapters/table/cells/header_units.hpp"
+#include "adapters/table/cells/stamps.hpp"
 
 namespace recald::table {
 namespace {

@@ -1,9 +1,9 @@
-#include "adapters/table/decimal_sign.hpp"
+#include "adapters/table/cells/decimal_sign.hpp"
 
 #include <algorithm>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/cell_number.hpp"
+#include "adapters/table/cells/cell_number.hpp"
 
 namespace recald::table {
 namespace {

@@ -1,10 +1,10 @@
-#include "adapters/table/stamp_parts.hpp"
+#include "adapters/table/cells/stamp_parts.hpp"
 
 #include <algorithm>
 #include <array>
 #include <string>
 
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/words.hpp"
 #include "core/text/ascii.hpp"
 
 namespace recald::table {

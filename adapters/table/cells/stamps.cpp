@@ -1,12 +1,12 @@
-#include "adapters/table/stamps.hpp"
+#include "adapters/table/cells/stamps.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/loose_stamp.hpp"
-#include "adapters/table/stamp_parts.hpp"
+#include "adapters/table/cells/loose_stamp.hpp"
+#include "adapters/table/cells/stamp_parts.hpp"
 
 namespace recald::table {
 namespace {

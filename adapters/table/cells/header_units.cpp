@@ -1,10 +1,10 @@
-#include "adapters/table/header_units.hpp"
+#include "adapters/table/cells/header_units.hpp"
 
 #include <algorithm>
 #include <array>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/words.hpp"
 #include "core/metering/units.hpp"
 #include "core/text/ascii.hpp"
 

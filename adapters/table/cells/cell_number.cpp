@@ -1,9 +1,9 @@
-#include "adapters/table/cell_number.hpp"
+#include "adapters/table/cells/cell_number.hpp"
 
 #include <algorithm>
 
 #include "adapters/csv/fields.hpp"
-#include "adapters/table/words.hpp"
+#include "adapters/table/cells/words.hpp"
 
 namespace recald::table {
 namespace {
