@@ -270,12 +270,12 @@ TEST_F(Init, HourlyGasInMmbtuWithMonthsFirst) {
 
 // --- What is decided by the whole file. ---
 
-// Winter time all year: an hour of spring that summer time does not have.
+// Winter time all year: the hour of spring that summer time does not have, and once that of autumn.
 TEST_F(Init, AClockThatIsNeverChanged) {
   const LocalCalendar berlin = zone("Europe/Berlin");
   const LocalCalendar winter = zone("Etc/GMT-1");
   const ExportTruth truth =
-      made_up_use(berlin, {day("2024-03-01"), day("2024-04-30"), minutes{60}}, 8, 10.0);
+      made_up_use(berlin, {day("2024-03-01"), day("2024-11-30"), minutes{60}}, 8, 10.0);
   std::string text = "time,load kW\n";
   for (const auto& [start, value] : truth.intervals) {
     text += clock_text(winter, start, "%Y-%m-%d %H:%M") + "," + with_point(value) + "\n";

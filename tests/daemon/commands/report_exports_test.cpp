@@ -136,7 +136,7 @@ TEST_F(ReportExports, SaysTheGuessesAndWhatInitWouldWrite) {
       run({"report", "my portal.csv", "--timezone", "Europe/Berlin", "--out", "page.html"});
   ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
   EXPECT_THAT(outcome.out,
-              AllOf(HasSubstr("  main "), HasSubstr("every 15 min, 2024-01-01 to 2024-02-29"),
+              AllOf(HasSubstr("  main "), HasSubstr("15 min  2024-01-01 2024-02-29"),
                     HasSubstr("Look at these, on which the page rests:\n  main: taken for "
                               "electricity.\n"),
                     HasSubstr("Wrote page.html. "),
