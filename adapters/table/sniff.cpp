@@ -194,11 +194,15 @@ class TableSniffer {
       const ColumnKinds& kinds = kinds_[column];
       if (column == times_.column || !kinds.is_mostly(kinds.times_of_day)) continue;
       if (side_of(column) != side) continue;
-      // 1415 may be anything, and 14.15 a number, unless the header says a time.
+      // 14.15 may be a number and 0015 anything, unless the header says a time.
       const Meanings meanings = meanings_at(column);
       const bool is_called_so =
           meanings.has_any({Meaning::clock, Meaning::time}) && !meanings.has(Meaning::use);
-      if (kinds.is_mostly(kinds.numbers) && (kinds.is_whole || !is_called_so)) continue;
+      const bool has_four_figures =
+          std::all_of(kinds.texts.begin(), kinds.texts.end(),
+                      [](const std::string& text) { return text.size() == 4; });
+      const bool may_be_time = is_called_so && (!kinds.is_whole || has_four_figures);
+      if (kinds.is_mostly(kinds.numbers) && !may_be_time) continue;
       return column;
     }
     return kNowhere;
@@ -545,6 +549,20 @@ class TableSniffer {
     return words;
   }
 
+  /// "main_W", unless other columns are of the north, the east or the south.
+  [[nodiscard]] bool is_in_watts(std::size_t column) const {
+    const auto ends_in = [&](std::size_t of, std::string_view letters) {
+      const std::string& text = full_text(of);
+      return text.size() > 2 && (text[text.size() - 2] == '_' || text[text.size() - 2] == '.') &&
+             letters.find(text.back()) != std::string_view::npos;
+    };
+    if (!ends_in(column, "W")) return false;
+    for (std::size_t other = 0; other < width_; ++other) {
+      if (ends_in(other, "NESO")) return false;
+    }
+    return true;
+  }
+
   void add_value(std::size_t column, const std::string& text) {
     const NameAndUnit parts = split_unit(full_text(column));
     GuessedColumn value{parts.name, text, parts.unit, "as the header says"};
@@ -566,6 +584,10 @@ class TableSniffer {
     if (value.unit.empty() && unit_of_all_ != kNowhere && kinds_[unit_of_all_].texts.size() == 1) {
       say(*kinds_[unit_of_all_].texts.begin(),
           "as column " + csv::in_quotes(column_text(unit_of_all_)) + " says");
+    }
+    if (value.unit.empty() && is_in_watts(column)) {
+      value.name.resize(value.name.size() - 2);
+      say("W", "as the header says");
     }
     if (value.unit.empty()) {
       say(above_.unit, "as row " + std::to_string(above_.row) + " says");

@@ -45,9 +45,11 @@ struct Candidate {
   int rank;  ///< By its header: starts before times before ends before when rows were written.
 };
 
+constexpr int kWritten = 3;  // the rank of times at which rows were written or changed
+
 int rank_of(std::string_view header) {
   const Meanings meanings = meanings_of(header);
-  if (meanings.has(Meaning::other_time)) return 3;
+  if (meanings.has(Meaning::other_time)) return kWritten;
   if (meanings.has(Meaning::from)) return 0;
   return meanings.has(Meaning::to) ? 2 : 1;
 }
@@ -72,6 +74,10 @@ std::optional<TimeColumn> find_dated(std::span<const KeptRow* const> rows, std::
         {column, *first, different.size(), rank_of(text_above(rows, *first, column))});
   }
   if (candidates.empty()) return {};
+  const auto is_of_rows = [](const Candidate& one) { return one.rank < kWritten; };
+  if (std::any_of(candidates.begin(), candidates.end(), is_of_rows)) {
+    std::erase_if(candidates, [&](const Candidate& one) { return !is_of_rows(one); });
+  }
   const std::size_t most = std::max_element(candidates.begin(), candidates.end(),
                                             [](const Candidate& a, const Candidate& b) {
                                               return a.different < b.different;

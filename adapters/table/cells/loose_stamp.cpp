@@ -310,4 +310,17 @@ std::optional<WrittenClock> parse_clock_loosely(std::string_view text) {
   return length > seconds{0} && length <= kRangeMax ? std::optional{clock} : std::nullopt;
 }
 
+std::optional<seconds> offset_said(std::string_view header) {
+  const std::string words = folded(header);
+  const std::string lower = to_lower(header);
+  for (const std::string word : {"utc", "gmt", "zulu"}) {
+    const std::size_t at = lower.find(word);
+    if (at == std::string::npos || words.find(" " + word + " ") == std::string::npos) continue;
+    Scanner scan{header.substr(at + word.size())};
+    scan.skip(" ");
+    return take_numeric_offset(scan, 1).value_or(seconds{0});
+  }
+  return {};
+}
+
 }  // namespace recald::table

@@ -61,6 +61,9 @@ struct WrittenClock {
 /// "14:15", "2:15:00 PM", "24:00", "00:00 - 00:15"; no hour alone, nothing with an offset.
 [[nodiscard]] std::optional<std::chrono::seconds> parse_time_of_day(std::string_view text);
 
+/// The offset that a header says its times have: 0 of "timestamp_utc", an hour of "Zeit (UTC+1)".
+[[nodiscard]] std::optional<std::chrono::seconds> offset_said(std::string_view header);
+
 /// Converts successive times of one clock to instants. If the clock shows an hour twice, order
 /// tells the two apart: once its times start again, it is the later hour.
 class ClockReader {

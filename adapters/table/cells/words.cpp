@@ -47,7 +47,8 @@ constexpr std::array kWordsOf{
             " klok| kl | klo | kello| tunti| timme| godzin| period | sp | interval|"
             " intervall| periodo | kwartier| viertelst| kvart| quarto| he | hr | std | tid "},
     WordsOf{Meaning::other_time,
-            " created| updated| modified| inserted| received| exported| erstellt| invoice"},
+            " created| updated| modified| inserted| received| exported| erstellt| invoice|"
+            " revision| processed| uploaded| published| billing"},
     WordsOf{Meaning::date_part,
             " year | month | week| jahr | monat |wochentag| annee | mois | ano | mes |"
             " anno | mese | jaar | maand | aar | maaned | manad | vuosi | rok | miesiac |"
@@ -60,7 +61,8 @@ constexpr std::array kWordsOf{
             "afname|injectie|teruglever|meterstand|leitura|injec|forbrug|effekt|"
             "maalerstand|foerbruk|forbruk|maetarstaellning|inmatning|kulutus|teho |"
             "tuotanto|lukema|zuzyci|pobor| moc |wskazanie| value| wert| valeur| valor|"
-            " waarde| vaerdi| vaerde| arvo| wartosc| volume| menge| quantity| quantite"},
+            " waarde| maengde| maeaerae| maara | vaerdi| vaerde| arvo| wartosc| volume| menge| "
+            "quantity| quantite"},
     WordsOf{Meaning::cost,
             "cost | costs | coste | costes | costo | precio| montant | custo | custos |"
             " euro | euros | charge inc| service charge| network charge| demand charge|"
@@ -79,13 +81,14 @@ constexpr std::array kWordsOf{
             " contatore| misuratore| aansluiting| maaler | maalepunkt| maetare| matare|"
             " maetpunkt| matpunkt| anlaeggning| mittari| kaeyttoepaikka| kayttopaikka|"
             " licznik| punkt poboru| building | gebaeude"},
-    WordsOf{Meaning::identifier,
-            " mpan| mprn| ean| esi id| esiid| nmi | cups | cpe | prm | pdl | pod | pce |"
-            " pdr | ppe | gsrn| malo | melo | iccp | serial| serien| serie | account|"
-            " customer| contract| premise| service point| service agreement| id | identif|"
-            " uuid |nummer |numer | number |numero |numeri | kunde| vertrag| contrat|"
-            " client | cliente | contrato| contratto| klant| kund | asiakas| sopimus|"
-            " klient| umow| matricola| nr | address| postcode | zip "},
+    WordsOf{
+        Meaning::identifier,
+        " mpan| mprn| ean| esi id| esiid| nmi | cups | cpe | prm | pdl | pod | pce |"
+        " pdr | ppe | gsrn| malo | melo | iccp | serial| serien| serie | account|"
+        " customer| contract| premise| service point| service agreement| id | identif|"
+        " uuid |nummer |numer | number |numero |numeri | kunde| vertrag| contrat|"
+        " client | cliente | tunnus|tunnus | contrato| contratto| klant| kund | asiakas| sopimus|"
+        " klient| umow| matricola| nr | address| postcode | zip "},
     WordsOf{Meaning::tariff,
             " tariff| tarif| tarief| taryfa| taksa| tou | rate | band | fascia| discrimina|"
             " strefa| peak | piek | season"},
@@ -97,7 +100,7 @@ constexpr std::array kWordsOf{
             " laatu| tila | jakosc| stan | uwagi| confidence"},
     WordsOf{Meaning::unit,
             " unit | units | uom |einheit | masseinheit| unite | unites | unidad| unita |"
-            " eenheid| unidade| enhed| enhet| yksikko| yksikkoe| jednostk"},
+            " eenheid| unidade|enhed |enhet | yksikko| yksikkoe| jednostk"},
     WordsOf{Meaning::counts,
             " index | row | rownum| record| line | lfd | zeile| ligne | fila | riga | rij |"
             " linha | raekke| rad | rivi | wiersz| lp | no | nr | unnamed | sequence| seq |"

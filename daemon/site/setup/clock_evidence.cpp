@@ -24,14 +24,17 @@ int spring_changes(const metering::TimeSpan& span, const metering::LocalCalendar
 
 }  // namespace
 
-std::optional<std::string> fixed_zone(const metering::LocalCalendar& calendar, Instant around) {
-  const auto year = std::chrono::year_month_day{std::chrono::floor<std::chrono::days>(around)};
-  const seconds winter = calendar.standard_offset(year.year());
-  if (winter % std::chrono::hours{1} != seconds{0}) return {};
-  const auto hours = std::chrono::duration_cast<std::chrono::hours>(winter).count();
+std::optional<std::string> zone_of_offset(seconds offset) {
+  if (offset % std::chrono::hours{1} != seconds{0}) return {};
+  const auto hours = std::chrono::duration_cast<std::chrono::hours>(offset).count();
   // Etc/GMT-1 is one hour ahead of UTC: POSIX counts westwards.
   return hours == 0 ? "Etc/GMT"
                     : fmt::format("Etc/GMT{}{}", hours > 0 ? '-' : '+', std::abs(hours));
+}
+
+std::optional<std::string> fixed_zone(const metering::LocalCalendar& calendar, Instant around) {
+  const auto year = std::chrono::year_month_day{std::chrono::floor<std::chrono::days>(around)};
+  return zone_of_offset(calendar.standard_offset(year.year()));
 }
 
 std::optional<std::string> fixed_clock_because(const table::ClockFacts& facts,

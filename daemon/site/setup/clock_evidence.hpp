@@ -1,6 +1,7 @@
 /// Whether an export's clock is the building's or stays on winter time all year.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,9 @@
 #include "core/metering/civil_time.hpp"
 
 namespace recald::daemon {
+
+/// A zone of one offset: "Etc/GMT-1". Nothing for offsets that are no whole hours.
+[[nodiscard]] std::optional<std::string> zone_of_offset(std::chrono::seconds offset);
 
 /// Of the zone's winter time, a zone that never changes: "Etc/GMT-1". Nothing for offsets that are
 /// no whole hours.

@@ -607,8 +607,16 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file,
     survey.meters = std::move(*meters);
     name_by_values(*guess, survey.meters);
   }
-  if (!guess->has_offsets && is_called_utc(guess->shape.time_column)) {
-    guess->shape.timezone = "Etc/UTC";
+  if (const auto said = table::offset_said(guess->shape.time_column); said && !guess->has_offsets) {
+    const auto zone = zone_of_offset(*said);
+    if (!zone) {
+      return about(file,
+                   {ErrorCode::unsupported,
+                    "column " + csv::in_quotes(guess->shape.time_column) +
+                        " has an offset that is no whole hour, which no zone of a fixed clock "
+                        "has; export its times in UTC"});
+    }
+    guess->shape.timezone = *said == seconds{0} ? "Etc/UTC" : *zone;
     survey.clock_because = "by the time column's name";
   }
   if (!guess->ignored.empty()) {

@@ -371,6 +371,39 @@ TEST(Sniff, NumbersOfHoursAndIntervalsAreAClock) {
   }
 }
 
+// "W" behind a name is watts, unless others have the wings of a building.
+TEST(Sniff, AWBehindANameIsAUnitOrTheWest) {
+  const auto units = [](const char* first, const char* second) {
+    const TableGuess found = guess(half_hours(
+        {"Time", first, second}, 2, [](int i, const std::string& date, const std::string& time) {
+          return std::vector<std::string>{date + " " + time, load(i), load(i / 2)};
+        }));
+    return found.values.at(0).unit + found.values.at(1).unit;
+  };
+  EXPECT_EQ(units("main_W", "sub_W"), "WW");
+  EXPECT_EQ(units("wing_W", "wing_E"), "");
+  EXPECT_EQ(units("Wing W", "Roof"), "");
+}
+
+TEST(Sniff, AClockOfFourFiguresIsOne) {
+  Cells cells{{"Datum", "Uhrzeit", "Ost (kWh)"}};
+  for (int i = 0; i < 96 * 3; ++i) {
+    cells.push_back(
+        {"2025090" + std::to_string(1 + i / 96), padded(i % 96 / 4) + padded(i % 4 * 15), load(i)});
+  }
+  EXPECT_EQ(guess(cells).shape.clock_column, "Uhrzeit");
+}
+
+TEST(Sniff, TimesAtWhichRowsWereWrittenAreNotTheirs) {
+  const TableGuess found = guess(half_hours(
+      {"Revision date", "Usage date", "kWh"}, 3,
+      [](int i, const std::string& date, const std::string& time) {
+        return std::vector<std::string>{"2025-09-09 10:" + padded(i % 60) + ":" + padded(i / 60),
+                                        date + " " + time, load(i)};
+      }));
+  EXPECT_EQ(found.shape.time_column, "Usage date");
+}
+
 TEST(Sniff, TimesThatEndAt24MayCountHours) {
   Cells cells{{"cups", "fecha", "hora", "consumo_kWh"}};
   for (int date = 1; date <= 9; ++date) {

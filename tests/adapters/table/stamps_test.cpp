@@ -247,6 +247,15 @@ TEST(Stamps, CountsOfAnyUnitSince1970) {
   }
 }
 
+TEST(Stamps, AHeaderMaySayTheOffset) {
+  EXPECT_EQ(offset_said("timestamp_utc"), std::chrono::seconds{0});
+  EXPECT_EQ(offset_said("Time (GMT)"), std::chrono::seconds{0});
+  EXPECT_EQ(offset_said("Zeit (UTC+1)"), hours{1});
+  EXPECT_EQ(offset_said("Time UTC-05:00"), hours{-5});
+  EXPECT_FALSE(offset_said("Time").has_value());
+  EXPECT_FALSE(offset_said("Butchers").has_value());
+}
+
 TEST(Stamps, ARefusalNamesTheOrderThatWouldDo) {
   EXPECT_EQ(parse_stamp("31/03/2024 10:00", TimeFormat::month_first).error().message,
             "timestamp '31/03/2024 10:00' is not mm/dd/yyyy; it would be one as dd/mm/yyyy");
