@@ -90,6 +90,17 @@ TEST(Sniff, TheDecimalSignIsWhatSomeValueShows) {
   EXPECT_THAT(refusal(mixed), HasSubstr("change their decimal sign: row"));
 }
 
+// Values that may be thousands or thousandths are written as the prices beside them.
+TEST(Sniff, OtherNumbersOfTheTableDecideTheDecimalSign) {
+  for (const char* price : {"0,25", "0.25"}) {
+    auto cells = hours(3, 10, 120, false, "1.234");
+    cells[0].push_back("Preis (EUR)");
+    for (std::size_t i = 1; i < cells.size(); ++i) cells[i].push_back(price);
+    EXPECT_EQ(guess(cells).shape.decimal, price[1]);
+    EXPECT_THAT(guess(cells).decimal_because, HasSubstr("as in '" + std::string{price} + "'"));
+  }
+}
+
 TEST(Sniff, UnitsStandInHeadersOrBelowThem) {
   auto cells = hours(3, 10, 48, false, "1.5");
   cells[0][1] = "Main";
@@ -344,6 +355,11 @@ TEST(Sniff, StartsAreRatherTakenThanEnds) {
         }));
     EXPECT_EQ(end.stamps, csv::Stamps::end) << names.to;
   }
+  const TableGuess logged = guess(half_hours(
+      {"Logged", "Start", "kWh"}, 3, [](int i, const std::string& date, const std::string& time) {
+        return std::vector<std::string>{date + " " + time + ":59", date + " " + time, load(i)};
+      }));
+  EXPECT_EQ(logged.shape.time_column, "Start");
   // Times that never change are of the query, not of the rows.
   const TableGuess query = guess(half_hours(
       {"_start", "_time", "kW"}, 3, [](int i, const std::string& date, const std::string& time) {
