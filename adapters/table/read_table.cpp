@@ -415,10 +415,10 @@ class TableReader {
   }
 
   [[nodiscard]] static std::string offset_text(seconds offset) {
-    const auto minutes = std::abs(offset.count()) / 60;
+    const auto whole_minutes = std::abs(offset.count()) / 60;
     const auto two = [](std::int64_t n) { return (n < 10 ? "0" : "") + std::to_string(n); };
-    return std::string{"UTC"} + (offset.count() < 0 ? "-" : "+") + two(minutes / 60) + ":" +
-           two(minutes % 60);
+    return std::string{"UTC"} + (offset.count() < 0 ? "-" : "+") + two(whole_minutes / 60) + ":" +
+           two(whole_minutes % 60);
   }
 
   void read_wide(const TableRow& row) {

@@ -11,9 +11,9 @@
 namespace recald::table {
 namespace {
 
-constexpr std::string_view kSigns = " _,;:-./|\n";
+constexpr std::string_view kUnitSigns = " _,;:-./|\n";
 
-bool is_sign(char c) { return kSigns.find(c) != std::string_view::npos; }
+bool is_sign(char c) { return kUnitSigns.find(c) != std::string_view::npos; }
 
 std::string_view without_signs(std::string_view text) {
   while (!text.empty() && is_sign(text.front())) text.remove_prefix(1);
@@ -103,8 +103,8 @@ NameAndUnit unit_in_brackets(std::string_view text) {
 /// The longest ending that is a unit: "ton-hours", not "hours". A single letter is more often a
 /// wing or a storey than watts.
 NameAndUnit unit_at_end(std::string_view text) {
-  for (std::size_t cut = text.find_first_of(kSigns); cut != std::string_view::npos;
-       cut = text.find_first_of(kSigns, cut + 1)) {
+  for (std::size_t cut = text.find_first_of(kUnitSigns); cut != std::string_view::npos;
+       cut = text.find_first_of(kUnitSigns, cut + 1)) {
     const std::string_view unit = csv::trimmed(text.substr(cut + 1));
     if (cut == 0 || unit.empty() || is_sign(unit.front()) || !is_unit(unit)) continue;
     const std::string_view before = text.substr(0, cut + (text[cut] == '/' ? 1 : 0));
@@ -122,7 +122,7 @@ NameAndUnit unit_inside(std::string_view text) {
       std::to_array<std::string_view>({"kwh", "mwh", "kw", "wh", "therms"});
   std::size_t begin = 0;
   while (begin < text.size()) {
-    const std::size_t end = std::min(text.find_first_of(kSigns, begin), text.size());
+    const std::size_t end = std::min(text.find_first_of(kUnitSigns, begin), text.size());
     const std::string_view word = text.substr(begin, end - begin);
     const bool is_one = std::any_of(kPlainUnits.begin(), kPlainUnits.end(),
                                     [&](auto unit) { return equals_ignoring_case(unit, word); });

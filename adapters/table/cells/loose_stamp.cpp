@@ -292,7 +292,7 @@ LooseStamp parse_loosely(std::string_view text, TimeFormat format) {
 
 std::optional<WrittenClock> parse_clock_loosely(std::string_view text) {
   const PlainText plain{text};
-  if (const auto hours = read_hours(plain.text())) return hours;
+  if (const auto hour = read_hours(plain.text())) return hour;
   Scanner scan{plain.text()};
   skip_words(scan, kBefore);
   const auto first = take_clock(scan, TimeFormat::day_first, false);

@@ -112,7 +112,8 @@ constexpr std::array kWordsOf{
             "blindleist|reattiv|blindenergie|reatec|reativ|loisteho|loisenerg|biern|"
             "blindstrom|apparent|scheinleist|aparente|schijnverm|kvar| varh| kva | kvah |"
             " va | mvar|power factor|powerfactor| pf | cos phi|cosphi|leistungsfaktor| hz |"
-            "frequen|frekvens|pressure|druck |setpoint|sollwert| percent | pct | dry bulb|"
+            "frequen|frekvens|pressure|druck |setpoint|sollwert| percent | pct | dry bulb| dew "
+            "point|taupunkt|"
             " wet bulb| wind |windspeed|windgeschw|irradi|globalstrahl| soc | rssi|"
             " occupan| degree day| hdd | cdd | m2 |flow rate|durchfluss| thd| factor |"
             " multiplier| latitude| longitude| minutes | duration| dauer "},
