@@ -501,14 +501,6 @@ void apply_units(const SurveyHints& hints, SurveyedExport& survey) {
   }
 }
 
-/// "timestamp_utc"
-bool is_called_utc(const std::string& column) {
-  const std::string text = table::folded(column);
-  return std::ranges::any_of(std::array{" utc ", " gmt ", " zulu "}, [&](const char* word) {
-    return text.find(word) != std::string::npos;
-  });
-}
-
 std::optional<seconds> first_offset(const std::filesystem::path& file,
                                     const table::TableGuess& guess) {
   const auto rows = table::open_rows(file, guess.shape);
