@@ -59,8 +59,6 @@ void take_answer(const OpenQuestion& question, const std::string& answer, Survey
     const auto at = std::ranges::find(table::kTimeFormats, answer);
     if (at == table::kTimeFormats.end()) return;
     hints.table.dates = static_cast<table::TimeFormat>(at - table::kTimeFormats.begin());
-  } else if (question.option == "--decimal" && !answer.empty()) {
-    hints.table.decimal = answer.front();
   }
 }
 

@@ -221,6 +221,7 @@ struct MeterWatch {
   RegisterWatch as_register;
   std::uint64_t values = 0;
   double sum_kW = 0.0;
+  double first = 0.0;
   std::uint64_t zeros = 0;
   std::uint64_t negatives = 0;
   std::uint64_t frozen = 0;
@@ -230,6 +231,7 @@ struct MeterWatch {
   void take(const metering::Reading& reading) {
     if (std::isnan(reading.mean_kW)) return;
     as_register.take(reading);
+    if (values == 0) first = reading.mean_kW;
     ++values;
     sum_kW += reading.mean_kW;
     if (reading.mean_kW == 0.0) ++zeros;
@@ -417,6 +419,11 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     meter.is_register = !is_rate && (meter.is_register || watch.as_register.is_register());
     meter.rated_kW = watch.as_register.rated_kW();
     if (meter.is_register) {
+      // A register's value over an interval, as if it were the interval's energy.
+      const double intervals = static_cast<double>(meter.span.length() / meter.interval);
+      meter.mean_kW = std::max(0.0, watch.last - watch.first) / intervals;
+    }
+    if (meter.is_register) {
       meter.stamps = {csv::Stamps::start, "no matter: a register stands at its stamp"};
     }
     usable.push_back(std::move(meter));
@@ -464,14 +471,6 @@ void ask_what_is_open(SurveyedExport& survey) {
          .option = "--dates",
          .subject = "",
          .answers = {"dd/mm/yyyy", "mm/dd/yyyy"}});
-  }
-  if (guess.decimal_because.starts_with("guessed")) {
-    survey.questions.push_back(
-        {.words = fmt::format("'{}': the decimal sign may be '{}', {}.", file, guess.shape.decimal,
-                              guess.decimal_because),
-         .option = "--decimal",
-         .subject = "",
-         .answers = {".", ","}});
   }
 }
 
@@ -614,6 +613,11 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file,
   if (!guess->ignored.empty()) {
     survey.notes.push_back(fmt::format("{}: columns not used: {}.", file.filename().string(),
                                        fmt::join(guess->ignored, ", ")));
+  }
+  if (guess->decimal_because.starts_with("guessed")) {
+    survey.notes.push_back(fmt::format("{}: the decimal sign is '{}', {}.",
+                                       file.filename().string(), guess->shape.decimal,
+                                       guess->decimal_because));
   }
   for (const std::string& note : guess->notes) {
     survey.notes.push_back(fmt::format("{}: {}", file.filename().string(), note));

@@ -412,16 +412,13 @@ TEST_F(Init, ItsOwnFormatIsOneAmongThem) {
   EXPECT_EQ(replayed().at("main").size(), 1u);
 }
 
-TEST_F(Init, DatesThatNothingDecidesAreSaid) {
+TEST_F(Init, DatesThatNothingDecidesAreRefused) {
   std::string text = "when,kWh\n";
   for (int hour = 0; hour < 24; ++hour) {
     text += "03/04/2024 " + std::string(hour < 10 ? "0" : "") + std::to_string(hour) + ":00," +
             std::to_string(hour % 5) + ".5\n";
   }
-  write_text(path("day.csv"), text);
-  const Outcome outcome = init("day.csv", "Europe/Berlin");
-  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("it may be mm/dd/yyyy"), HasSubstr("would decide")));
+  expect_refused("day.csv", text, "it may be mm/dd/yyyy; a day after the 12th");
 }
 
 /// A cool year, as an EPW file. Hours are the ends of their intervals.
