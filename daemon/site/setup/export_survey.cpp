@@ -119,7 +119,11 @@ Result<table::TableGuess> guess_workbook(const std::filesystem::path& file,
     }
     if (!first) first = guess.error();
   }
-  return tl::unexpected(first.value_or(Error{ErrorCode::malformed, "it has no sheet"}));
+  const std::string missing =
+      hints.sheet.empty()
+          ? "it has no sheet"
+          : fmt::format("it has no sheet '{}'; it has '{}'", hints.sheet, fmt::join(names, "', '"));
+  return tl::unexpected(first.value_or(Error{ErrorCode::malformed, missing}));
 }
 
 /// A unit that nothing says is asked for once its values are known; kWh shows them as they are.
@@ -266,8 +270,10 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
                                }};
   std::vector<table::TableMeter> meters;
   for (const SurveyedMeter& meter : survey.meters) {
-    csv::MeterRows rows{
-        .name = meter.name_in_file, .utility = meter.utility.value, .units = factors_of(meter)};
+    csv::MeterRows rows{.name = meter.name_in_file,
+                        .utility = meter.utility.value,
+                        .interval = survey.told_interval,
+                        .units = factors_of(meter)};
     const bool is_said = survey.table && survey.table->shape.unit_column.empty();
     meters.push_back({std::move(rows), meter.column, is_said ? unit_read(meter) : ""});
   }
@@ -638,6 +644,7 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   auto survey = described_export(file, hints);
   if (!survey) return survey;
   apply_units(hints, *survey);
+  survey->told_interval = hints.interval;
   if (survey->table && !hints.clock.empty()) {
     survey->table->shape.timezone = hints.clock;
     survey->clock_because = "as told";

@@ -51,9 +51,10 @@ struct SurveyedExport {
   std::vector<SurveyedMeter> meters;
   std::vector<std::string> notes;       ///< A sentence each: what is undecided, or left out.
   std::vector<OpenQuestion> questions;  ///< What has to be known before it can be read.
-  std::string clock_because;         ///< Why the table has a zone of its own; empty: it has none.
-  std::string clock_format_because;  ///< Of a clock column that counts.
-  std::optional<std::chrono::seconds> utc_offset;  ///< Of its first stamp, if stamps say theirs.
+  std::string clock_because;  ///< Why the table has a zone of its own; empty: it has none.
+  std::optional<std::chrono::seconds> told_interval;  ///< Of its values, if somebody said so.
+  std::string clock_format_because;                   ///< Of a clock column that counts.
+  std::optional<std::chrono::seconds> utc_offset;     ///< Of its first stamp, if stamps say theirs.
 };
 
 /// Looks at the first rows, then reads the file to its end the way that `replay` would. Memory does

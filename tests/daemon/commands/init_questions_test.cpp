@@ -161,6 +161,22 @@ TEST_F(InitQuestions, OneOddStampIsNoClock) {
   }
 }
 
+// What is said is not guessed: the interval of a file of two rows, which columns are meters.
+TEST_F(InitQuestions, WhatIsSaidIsNotGuessed) {
+  write_text(folder_ / "holes.csv",
+             "Time,A (kWh),B (kWh)\n2024-03-13 00:00,1.5,2.5\n2024-03-13 01:00,1.7,2.5\n"
+             "2024-03-13 02:00,1.25,2.75\n2024-03-13 02:15,1.5,2.25\n");
+  ASSERT_EQ(
+      init({"holes.csv"}, {"--interval", "15", "--column", "B (kWh)", "--stamps", "end"}).exit_code,
+      kSuccess);
+  EXPECT_THAT(read_text(site()),
+              AllOf(HasSubstr("interval = \"15m\""), HasSubstr("column = \"B (kWh)\""),
+                    HasSubstr("stamps = \"end\""), Not(HasSubstr("A (kWh)"))));
+  std::filesystem::remove_all(path("site"));
+  EXPECT_THAT(init({"holes.csv"}).err, HasSubstr("is no start of an interval of 60 minutes"));
+  EXPECT_THAT(init({"holes.csv"}, {"--column", "C"}).err, HasSubstr("it has no column 'C'"));
+}
+
 // Downloads that overlap are one meter, and the one that ends later corrects the others.
 TEST_F(InitQuestions, DownloadsThatOverlapAreOneMeter) {
   write_export("a.csv", "Time,Load (kWh)", "2024-01-01", "2024-02-10");
