@@ -192,9 +192,17 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
     const std::string text = table::utf8_of(name);
     known.emplace(std::string{name}, meters.size());
     const bool has_unit = unit_at && *unit_at < row.cells.size();
+    if (has_unit) {
+      meters.push_back(described(text, text, value.column, table::utf8_of(row.cells[*unit_at]),
+                                 "as its rows say"));
+      continue;
+    }
+    // "sensor.main_energy_kwh"
+    std::string in_name = value.unit.empty() ? table::split_unit(text).unit : "";
+    const bool is_in_name = !in_name.empty();
     meters.push_back(described(text, text, value.column,
-                               has_unit ? table::utf8_of(row.cells[*unit_at]) : value.unit,
-                               has_unit ? "as its rows say" : value.unit_because));
+                               is_in_name ? std::move(in_name) : value.unit,
+                               is_in_name ? "as its name says" : value.unit_because));
   }
   if (rows->error()) return tl::unexpected(*rows->error());
   return meters;

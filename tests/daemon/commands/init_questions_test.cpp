@@ -92,6 +92,24 @@ TEST_F(InitQuestions, AUnitThatNothingSaysIsRefusedWithItsOption) {
   }
 }
 
+// As home automation names its sensors, a row a value.
+TEST_F(InitQuestions, AUnitInTheNameOfARowsMeterIsSaid) {
+  const LocalCalendar calendar = LocalCalendar::open("Europe/Berlin").value();
+  std::string text = "entity_id,state,last_changed\n";
+  for (const auto& [start, value] :
+       made_up_use(calendar, {day("2024-02-01"), day("2024-02-29"), minutes{15}}, 1, 40.0)
+           .intervals) {
+    for (const char* name : {"sensor.main_power_kw", "sensor.pump_wh"}) {
+      text += std::string{name} + "," + with_point(value) + "," + metering::to_string(start) + "\n";
+    }
+  }
+  write_text(folder_ / "history.csv", text);
+  const Outcome outcome = init({"history.csv"});
+  ASSERT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_THAT(read_text(site()), AllOf(HasSubstr("unit = \"kw\""), HasSubstr("unit = \"wh\""),
+                                       HasSubstr("as its name says")));
+}
+
 TEST_F(InitQuestions, SomebodyAtTheConsoleIsAsked) {
   write_export("load.csv", "Time,Value", "2024-02-01", "2024-02-29");
   const Outcome asked = init_asked("load.csv", "kW\n");
