@@ -12,7 +12,7 @@ namespace recald::drift {
 
 /// Of a meter, in order of the days on which it was noticed.
 struct NoticedChange {
-  metering::Day since;  ///< The earliest day that it may have begun on.
+  metering::Day since;  ///< Likeliest first day.
   int direction;        ///< +1 more than expected, -1 less.
 };
 

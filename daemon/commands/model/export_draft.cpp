@@ -9,6 +9,7 @@
 #include <span>
 
 #include "adapters/csv/fields.hpp"
+#include "daemon/site/setup/clock_evidence.hpp"
 #include "daemon/site/setup/joined_exports.hpp"
 
 namespace recald::daemon {
@@ -19,25 +20,16 @@ Guess<std::string> zone_of_draft(const std::string& given,
                                  const std::vector<SurveyedExport>& exports) {
   if (!given.empty()) return {given, "as told; months are local"};
   for (const SurveyedExport& one : exports) {
-    if (!one.utc_offset || one.utc_offset->count() % 3600 != 0) continue;
-    const auto hours = one.utc_offset->count() / 3600;
-    if (hours == 0) continue;
-    // Etc/GMT+5 is five hours behind UTC: POSIX counts westwards.
-    return {fmt::format("Etc/GMT{}{}", hours > 0 ? '-' : '+', std::abs(hours)),
+    if (!one.utc_offset || one.utc_offset->count() == 0) continue;
+    const auto zone = zone_of_offset(*one.utc_offset);
+    if (!zone) continue;
+    return {*zone,
             "guessed: the first stamp's offset; months are local, so name the building's zone"};
   }
   return {"Etc/UTC", "guessed: no stamp is local; months are, so name the building's zone"};
 }
 
-constexpr double kMonth_h = 730.0;
 constexpr double kYear_h = 8760.0;
-
-/// Three digits, or all before the point.
-std::string short_number(double value) {
-  const double size = std::abs(value);
-  if (size >= 100.0 || size == 0.0) return fmt::format("{:.0f}", value);
-  return size >= 10.0 ? fmt::format("{:.1f}", value) : fmt::format("{:.3g}", value);
-}
 
 std::string unit_words(const SurveyedMeter& meter) {
   return meter.is_register ? meter.unit.value + ", a register" : meter.unit.value;
@@ -161,9 +153,9 @@ void print_draft(const ExportDraft& drafted, std::string_view look, std::optiona
           draft.meter_ids[number++], metering::to_string(meter.utility.value), unit_words(meter),
           meter.interval.count() / 60,
           metering::to_string(calendar.local_time(meter.span.begin).date),
-          metering::to_string(calendar.local_time(last).date), short_number(meter.mean_kW),
-          short_number(kMonth_h * meter.mean_kW),
-          area_m2 ? fmt::format(" {:>9}", short_number(kYear_h * meter.mean_kW / *area_m2)) : "",
+          metering::to_string(calendar.local_time(last).date), amount_text(meter.mean_kW),
+          amount_text(kMonth_h * meter.mean_kW),
+          area_m2 ? fmt::format(" {:>9}", amount_text(kYear_h * meter.mean_kW / *area_m2)) : "",
           std::min(100.0, 100.0 * static_cast<double>(meter.values) / intervals));
     }
   }

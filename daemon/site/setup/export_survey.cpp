@@ -445,16 +445,8 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
   survey.meters = std::move(usable);
 }
 
-/// "1.2", "3555"
-std::string amount_text(double value) {
-  const double size = std::abs(value);
-  if (size >= 100.0) return fmt::format("{:.0f}", value);
-  return size >= 1.0 ? fmt::format("{:.1f}", value) : fmt::format("{:.3g}", value);
-}
-
 /// What a meter would use a month, by unit.
 OpenQuestion unit_question(const SurveyedExport& survey, const SurveyedMeter& meter) {
-  constexpr double kMonth_h = 730.0;
   const double month_kWh = meter.mean_kW * kMonth_h;
   const double hours = static_cast<double>(meter.interval.count()) / 3600.0;
   return {.words = fmt::format(
@@ -645,6 +637,12 @@ bool is_without_zone(const SurveyedExport& survey) {
 }
 
 }  // namespace
+
+std::string amount_text(double value) {
+  const double size = std::abs(value);
+  if (size >= 100.0 || size == 0.0) return fmt::format("{:.0f}", value);
+  return size >= 10.0 ? fmt::format("{:.1f}", value) : fmt::format("{:.3g}", value);
+}
 
 Result<SurveyedExport> survey_export(const std::filesystem::path& file,
                                      const std::optional<metering::LocalCalendar>& calendar,

@@ -57,6 +57,11 @@ struct SurveyedExport {
   std::optional<std::chrono::seconds> utc_offset;     ///< Of its first stamp, if stamps say theirs.
 };
 
+inline constexpr double kMonth_h = 730.0;  ///< A twelfth of a year.
+
+/// Three digits, or all before the point: "3.55", "41.2", "3555".
+[[nodiscard]] std::string amount_text(double value);
+
 /// Looks at the first rows, then reads the file to its end the way that `replay` would. Memory does
 /// not grow with its length.
 /// @param calendar  Of the site; absent: nobody gave a zone.
