@@ -53,13 +53,14 @@ std::optional<std::string> without_groups(std::string_view whole, char decimal) 
 
 bool is_blank(std::string_view cell) {
   if (cell.empty()) return true;
-  if (cell.size() > 8) return false;
+  if (cell.size() > 11) return false;
   std::string word;
   for (const char c : cell) {
     word += to_lower(c);
   }
-  constexpr std::array<std::string_view, 12> kWords{
-      "-", "--", "na", "n/a", "#n/a", "nan", "null", "none", "nil", "no data", "missing", "---"};
+  constexpr std::array<std::string_view, 16> kWords{
+      "-",   "--",      "na",      "n/a", "#n/a",        "nan",     "null",    "none",
+      "nil", "no data", "missing", "---", "unavailable", "unknown", "offline", "no value"};
   return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "adapters/csv/reading_intake.hpp"
+#include "adapters/table/flags.hpp"
 #include "adapters/table/row_source.hpp"
 #include "adapters/table/table_shape.hpp"
 
@@ -17,10 +18,11 @@ namespace recald::table {
 [[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(const std::filesystem::path& file,
                                                            const TableShape& shape);
 
-/// What was found out about clocks while a table was read.
+/// What was found out about clocks and flags while a table was read.
 struct ClockFacts {
-  std::uint64_t naive = 0;    ///< Stamps without an offset.
-  std::uint64_t skipped = 0;  ///< Of these, times that the clock skips.
+  std::uint64_t naive = 0;            ///< Stamps without an offset.
+  std::uint64_t skipped = 0;          ///< Of these, times that the clock skips.
+  std::vector<FlagCount> flags = {};  ///< Of the flag column, the first `kFlagsMax`.
 };
 
 /// The intake's settings for these meters.

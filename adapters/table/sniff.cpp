@@ -10,6 +10,7 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/table/cell_number.hpp"
 #include "adapters/table/delimited.hpp"
+#include "adapters/table/flags.hpp"
 #include "core/metering/units.hpp"
 #include "core/text/ascii.hpp"
 #include "core/text/printable.hpp"
@@ -88,6 +89,7 @@ class TableSniffer {
     TRY(find_time_format());
     find_meters();
     TRY(find_decimal());
+    find_flags();
     TRY(list_values());
     return std::move(guess_);
   }
@@ -351,7 +353,7 @@ class TableSniffer {
       const bool repeats = kinds.texts.size() < 100 && kinds.texts.size() * 3 <= kinds.filled;
       const bool is_called_so =
           contains_any(header, kMeterWords) && split_unit(header).unit.empty();
-      const bool may_name = repeats && !contains_any(header, kFlagWords);
+      const bool may_name = repeats && !contains_any(header, kFlagWords) && !says_quality(column);
       if (kinds.is_mostly(kinds.words) && may_name && (is_called_so || kinds.texts.size() > 1)) {
         names.push_back(column);
       } else if (kinds.is_mostly(kinds.numbers)) {
@@ -382,6 +384,31 @@ class TableSniffer {
     meter_ = called == names.end() ? names.front() : *called;
     guess_.shape.meter_column = column_text(meter_);
     if (unit_ != kNowhere) guess_.shape.unit_column = column_text(unit_);
+  }
+
+  /// Whether the texts of a column say how its values came about.
+  [[nodiscard]] bool says_quality(std::size_t column) const {
+    const std::set<std::string>& texts = kinds_[column].texts;
+    return are_flags(std::vector<std::string_view>{texts.begin(), texts.end()});
+  }
+
+  /// Finds a column of few short texts that says how good each value is.
+  void find_flags() {
+    constexpr std::size_t kFlagLength = 24;
+    for (std::size_t column = 0; column < width_; ++column) {
+      const ColumnKinds& kinds = kinds_[column];
+      const bool is_other = column == time_ || column == clock_ || column == meter_ ||
+                            column == unit_ || column == unit_of_all_ ||
+                            std::ranges::find(values_, column) != values_.end();
+      const bool are_short =
+          kinds.texts.size() <= kFlagsMax &&
+          std::ranges::all_of(kinds.texts, [](const auto& t) { return t.size() <= kFlagLength; });
+      if (is_other || kinds.filled == 0 || kinds.words == 0 || !are_short) continue;
+      if (!is_flag_header(header_text(column)) && !says_quality(column)) continue;
+      guess_.shape.flag_column = column_text(column);
+      flag_ = column;
+      return;
+    }
   }
 
   /// Counts cells with one meaning of their signs.
@@ -463,7 +490,10 @@ class TableSniffer {
 
   Result<void> list_values() {
     for (std::size_t column = 0; column < width_; ++column) {
-      if (column == time_ || column == clock_ || column == meter_ || column == unit_) continue;
+      if (column == time_ || column == clock_ || column == meter_ || column == unit_ ||
+          column == flag_) {
+        continue;
+      }
       const std::string text = column_text(column);
       if (std::find(values_.begin(), values_.end(), column) != values_.end()) {
         if (is_other_quantity(column)) {
@@ -509,7 +539,8 @@ class TableSniffer {
   std::size_t meter_ = kNowhere;
   std::size_t unit_ = kNowhere;         ///< Of a long table.
   std::size_t unit_of_all_ = kNowhere;  ///< Of any other table.
-  std::size_t data_ = 0;                ///< First row with a time.
+  std::size_t flag_ = kNowhere;
+  std::size_t data_ = 0;  ///< First row with a time.
   bool is_counted_ = false;
   const KeptRow* header_ = nullptr;
   const KeptRow* units_ = nullptr;
