@@ -54,13 +54,14 @@ http::Response post_readings(const Served& served, const http::Request& request)
   auto pushed = parse_pushed(request.body, served.site, served.now());
   if (!pushed) return pushed.error();
   const std::string& id = pushed->meter->meter.id;
-  if (!served.take_readings || !served.take_samples) {
+  const bool has_counter = pushed->meter->counter.has_value();
+  if (has_counter ? !served.take_samples : !served.take_readings) {
     return http::error_response(
         409, "not_possible", fmt::format("this daemon does not accept readings of meter '{}'", id),
         "meter");
   }
   const auto suspect = suspect_json(*pushed, served.site.closing.closing.validation);
-  const auto counts = pushed->meter->counter
+  const auto counts = has_counter
                           ? served.take_samples(id, std::move(pushed->samples))
                           : served.take_readings(pushed->stored_id(), std::move(pushed->readings),
                                                  pushed->correction);
