@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "adapters/csv/fields.hpp"
-#include "core/metering/registers/interval_book.hpp"
+#include "core/metering/registers/rest.hpp"
 
 namespace recald::csv {
 namespace {
@@ -15,49 +15,37 @@ using metering::Reading;
 using std::chrono::seconds;
 
 constexpr std::size_t kHeadRows = 64;  // an interval is inferred from these
+constexpr std::size_t kFewRows = 8;    // … if there are no fewer, or it is an ordinary one
+constexpr std::size_t kFirstRows = 4;  // the step at the beginning, if they agree
+constexpr std::size_t kRegisterRows = 4096;
 constexpr std::size_t kRefusedShown = 3;
-constexpr seconds kIntervalMin{60};
-constexpr seconds kIntervalMax{3600};
-constexpr seconds kOffsetGrid{900};  // the offsets of all zones since 1971 are multiples of it
+constexpr std::size_t kStepsShown = 20;
+constexpr std::size_t kChangeRows = 8;   // show whether the step has changed
+constexpr std::size_t kChangeAlike = 6;  // of the steps between them are alike then
+constexpr std::size_t kChangeMin = 3;    // … or at the end of a file all, of so many
+constexpr seconds kOffsetGrid{900};      // the offsets of all zones since 1971 are multiples of it
+constexpr seconds kRegisterInterval{900};  // of registers that are logged now and then
+constexpr int kToleranceShare = 10;        // of an interval stamps may lie beside its start
 
-std::string in_words(seconds span) {
-  constexpr std::int64_t kDay = 86'400;
-  if (span.count() >= 2 * kDay) return std::to_string(span.count() / kDay) + " days";
-  if (span.count() == kDay) return "day";
-  return span.count() % 60 == 0 ? std::to_string(span.count() / 60) + " minutes"
-                                : std::to_string(span.count()) + " seconds";
-}
+Instant stamp_of(const WaitingRow& waiting) { return waiting.row.stamp; }
 
-template <class Key>
-Key commonest(const std::map<Key, int>& counts) {
-  const auto most =
-      std::max_element(counts.begin(), counts.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most->first;
-}
-
-/// The commonest step between neighbouring stamps, the smaller of equals. Nothing for fewer than
-/// two stamps.
-std::optional<seconds> commonest_step(std::vector<Instant> stamps) {
-  std::sort(stamps.begin(), stamps.end());
-  std::map<seconds, int> counts;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    if (stamps[i] > stamps[i - 1]) ++counts[stamps[i] - stamps[i - 1]];
-  }
-  if (counts.empty()) return {};
-  return commonest(counts);
-}
-
-std::vector<Instant> stamps_of(const IntakeMeter& meter) {
+template <class Rows, class Stamp>
+std::vector<Instant> stamps_of(const Rows& rows, std::size_t count, Stamp stamp) {
   std::vector<Instant> stamps;
-  for (const auto& head : meter.head) stamps.push_back(head.row.stamp);
+  for (std::size_t i = 0; i < std::min(count, rows.size()); ++i) stamps.push_back(stamp(rows[i]));
   return stamps;
 }
+
+/// By more than intervals of clocks that run fast or slow are.
+bool is_longer(seconds step, seconds interval) { return 10 * step > 11 * interval; }
+
+/// A value holds until the next, unless that is further off than two and a half steps.
+bool reaches(seconds to_next, seconds step) { return 2 * to_next <= 5 * step; }
 
 }  // namespace
 
 ReadingIntake::ReadingIntake(const ReadingsOptions& options, const ReadingsSink& sink)
-    : sink_{sink} {
+    : sink_{sink}, finds_tolerance_{options.finds_tolerance} {
   report_.issues.listed_max = options.issues_listed_max;
   for (const MeterRows& rows : options.meters) add_meter(rows);
 }
@@ -94,11 +82,27 @@ void ReadingIntake::refuse(std::uint64_t line, std::string_view reason, std::str
   meter->report.first_refused.push_back({line, printable(reason), excerpt(text)});
 }
 
+void ReadingIntake::show_row(const IntakeMeter& meter, const Row& row) const {
+  sink_.on_row({meter.report.shown.meter, row.stamp,
+                row.value * row.conversion.factor * meter.rows.multiplier, row.conversion.is_rate});
+}
+
 void ReadingIntake::take_first(IntakeMeter& meter, const Row& row) {
   if (meter.refused) return;
   if (meter.rows.counter) return keep_sample(meter, row);
   meter.head.push_back({row, excerpt(row.text)});
-  if (meter.head.size() == kHeadRows) begin_meter(meter);
+  if (meter.head.size() < kHeadRows) return;
+  const auto steps = steps_of(stamps_of(meter.head, kHeadRows, stamp_of));
+  if (steps && is_longer(steps->commonest, kIntervalMax)) return drop_coarse_head(meter);
+  begin_meter(meter);
+}
+
+/// Values of days may come before those of hours.
+void ReadingIntake::drop_coarse_head(IntakeMeter& meter) {
+  const auto steps = steps_of(stamps_of(meter.head, kHeadRows, stamp_of));
+  note_step(meter, meter.head.front().row, steps->commonest);
+  for (std::size_t i = 0; i < kHeadRows / 2; ++i) leave_out(meter, meter.head[i].row);
+  meter.head.erase(meter.head.begin(), meter.head.begin() + kHeadRows / 2);
 }
 
 /// The first rows show the interval; from here on rows go straight to the sink.
@@ -109,82 +113,314 @@ void ReadingIntake::begin_meter(IntakeMeter& meter) {
     set_scale(meter);
     meter.grid_known = true;
     if (sink_.on_meter) sink_.on_meter(meter.report.shown);
-    for (auto& [row, text] : meter.head) {
-      row.text = text;
-      hand_on(meter, row);
+    for (auto& [row, text] : std::exchange(meter.head, {})) {
+      Row first = row;
+      first.text = text;
+      hand_on(meter, first);
     }
   }
   meter.head = {};
 }
 
+bool ReadingIntake::refuse_meter(IntakeMeter& meter, const std::string& why) {
+  const auto& [row, text] = meter.head.front();
+  refuse(row.line, "meter " + in_quotes(meter.report.shown.name) + " " + why, text, &meter);
+  return false;
+}
+
+/// The interval that the distances between stamps show, or a refusal.
+bool ReadingIntake::find_step(IntakeMeter& meter) {
+  MeterInFile& shown = meter.report.shown;
+  const auto steps = steps_of(stamps_of(meter.head, kHeadRows, stamp_of));
+  if (meter.rows.interval) {
+    shown.interval = *meter.rows.interval;
+    const bool shows = steps && steps->is_regular() && meter.head.size() >= kFewRows;
+    meter.step = shows ? steps->commonest : shown.interval;
+    return true;
+  }
+  if (!steps) {
+    return refuse_meter(meter,
+                        "has one time stamp only, so its interval cannot be seen; declare it");
+  }
+  // A few rows show no more than their commonest step.
+  const bool is_regular = steps->is_regular() || meter.head.size() < kFewRows;
+  meter.is_irregular = !is_regular && meter.conversion.is_rate;
+  meter.step = is_regular ? steps->commonest : steps->median;
+  if (meter.head.size() < kFewRows && !is_interval(meter.step) &&
+      !is_longer(meter.step, kIntervalMax)) {
+    return refuse_meter(
+        meter, "comes every " + in_words(meter.step) + ", in too few rows to average them");
+  }
+  if (is_longer(meter.step, kIntervalMax)) {
+    return refuse_meter(
+        meter, "comes every " + in_words(meter.step) + "; recald needs values of an hour or less");
+  }
+  if (!is_regular && !meter.is_irregular) {
+    return refuse_meter(
+        meter, "does not come at regular times, but every " + in_words(steps->median) +
+                   " or so, and these are no powers; if its values are those of a cumulative "
+                   "register, add rated_kW and counter = { unit = \"kWh\" } to its [[meter]]");
+  }
+  shown.interval = is_interval(meter.step) ? meter.step : *interval_for(meter.step);
+  return true;
+}
+
 bool ReadingIntake::find_grid(IntakeMeter& meter) {
   MeterInFile& shown = meter.report.shown;
   shown.interval_inferred = !meter.rows.interval;
-  const auto interval =
-      meter.rows.interval ? meter.rows.interval : commonest_step(stamps_of(meter));
-  const auto& [row, text] = meter.head.front();
-  if (!interval) {
-    refuse(row.line,
-           "meter " + in_quotes(shown.name) +
-               " has one time stamp only, so its interval cannot be seen; declare it",
-           text, &meter);
-    return false;
-  }
-  if (*interval < kIntervalMin || *interval > kIntervalMax ||
-      kIntervalMax % *interval != seconds{0}) {
-    refuse(row.line,
-           "meter " + in_quotes(shown.name) + " comes every " + in_words(*interval) +
-               (*interval > kIntervalMax
-                    ? "; recald needs values of an hour or less: ask for the load profile"
-                    : "; supported are whole minutes that divide an hour"),
-           text, &meter);
-    return false;
-  }
-  shown.interval = *interval;
+  meter.tolerance = meter.rows.grid_tolerance;
+  find_tolerance(meter);
+  for (WaitingRow& one : meter.head) one.row.stamp = on_grid(meter, one.row.stamp);
+  if (!find_step(meter)) return false;
   std::map<seconds, int> phases;
-  for (const auto& head : meter.head) ++phases[head.row.stamp.time_since_epoch() % *interval];
-  shown.phase = commonest(phases);
+  for (const WaitingRow& one : meter.head) {
+    ++phases[one.row.stamp.time_since_epoch() % shown.interval];
+  }
+  shown.phase = std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) {
+                  return a.second < b.second;
+                })->first;
   // A phase that no zone offset explains means a wrong clock; the rows are then refused one by one.
   if (shown.phase % kOffsetGrid != seconds{0}) shown.phase = seconds{0};
+  // The first rows may come at another step than most.
+  const auto first = steps_of(stamps_of(meter.head, kFirstRows, stamp_of));
+  if (first && !meter.is_irregular && first->share == 1.0) meter.step = first->commonest;
+  note_step(meter, meter.head.front().row, meter.step);
+  const bool is_other = meter.step < shown.interval || !is_interval(meter.step);
+  if (is_other || meter.is_irregular) use_means(meter);
+  find_way(meter);
   return true;
+}
+
+/// Stamps a little beside the grid, as of loggers that write what they have read: a tolerance that
+/// explains the first rows is tried on all.
+void ReadingIntake::find_tolerance(IntakeMeter& meter) {
+  const auto steps = steps_of(stamps_of(meter.head, kHeadRows, stamp_of));
+  if (!steps) return;
+  auto interval = meter.rows.interval;
+  if (!interval)
+    interval = is_interval(steps->commonest) ? steps->commonest : interval_for(steps->median);
+  // A regular step of another length drifts off any grid.
+  if (!interval || (steps->is_regular() && !is_interval(steps->commonest))) return;
+  meter.report.shown.interval = *interval;
+  if (!finds_tolerance_ || meter.tolerance > seconds{0}) return;
+  seconds worst{0};
+  for (const WaitingRow& one : meter.head) {
+    worst = std::max(worst, std::chrono::abs(beside_grid(*interval, one.row.stamp)));
+  }
+  if (worst > seconds{0} && kToleranceShare * worst <= *interval) {
+    meter.tolerance = *interval / kToleranceShare;
+  }
+}
+
+/// By how much a stamp is late; negative: early.
+seconds ReadingIntake::beside_grid(seconds interval, Instant stamp) {
+  const seconds grid = std::min(interval, kOffsetGrid);
+  const seconds late = stamp.time_since_epoch() % grid;
+  return 2 * late > grid ? late - grid : late;
+}
+
+Instant ReadingIntake::on_grid(IntakeMeter& meter, Instant stamp) {
+  if (meter.tolerance == seconds{0} || meter.report.shown.interval == seconds{0}) return stamp;
+  const seconds late = beside_grid(meter.report.shown.interval, stamp);
+  const seconds beside = std::chrono::abs(late);
+  if (beside > meter.tolerance) return stamp;
+  meter.report.beside_max = std::max(meter.report.beside_max, beside);
+  return stamp - late;
 }
 
 void ReadingIntake::set_scale(IntakeMeter& meter) {
   meter.kW_per_unit = meter.conversion.mean_kW(meter.rows.multiplier, meter.report.shown.interval);
 }
 
-/// Handles a row that is not simply the next interval. False: refused.
-bool ReadingIntake::check_order(IntakeMeter& meter, const Row& row, Instant start) {
+void ReadingIntake::use_means(IntakeMeter& meter) {
   const MeterInFile& shown = meter.report.shown;
-  if (start < Instant{} + std::chrono::days{366} ||
-      start + shown.interval > metering::kLatestInstant) {
+  if (!meter.means) meter.means.emplace(shown.meter, shown.interval, shown.phase);
+}
+
+void ReadingIntake::find_way(IntakeMeter& meter) {
+  meter.is_plain =
+      !meter.means && meter.waiting.empty() && meter.step == meter.report.shown.interval;
+}
+
+/// Takes a row that is not simply the next interval. One at another step waits until those after it
+/// show whether rows are missing or come at this step from now on.
+void ReadingIntake::take_odd(IntakeMeter& meter, const Row& row, Instant stamp) {
+  const auto wait = [&] {
+    meter.waiting.push_back({row, excerpt(row.text)});
+    meter.waiting.back().row.stamp = stamp;
+    find_way(meter);
+  };
+  if (!meter.waiting.empty()) {
+    if (stamp > stamp_of(meter.waiting.back())) {
+      wait();
+      if (meter.waiting.size() == kChangeRows) settle(meter);
+      return;
+    }
+    settle(meter);
+  }
+  const bool is_later = meter.last && meter.last == meter.newest && stamp > *meter.last;
+  if (is_later && !meter.is_irregular && stamp != *meter.last + meter.step) return wait();
+  place(meter, row, stamp);
+}
+
+/// Decides about the rows that wait.
+void ReadingIntake::settle(IntakeMeter& meter) {
+  std::vector<WaitingRow> rows = std::exchange(meter.waiting, {});
+  if (rows.empty()) return;
+  const auto steps = steps_of(stamps_of(rows, rows.size(), stamp_of));
+  const std::size_t between = rows.size() - 1;
+  const std::size_t needed =
+      rows.size() == kChangeRows ? kChangeAlike : std::max(kChangeMin, between);
+  const bool is_new =
+      steps && steps->commonest != meter.step && between >= needed &&
+      steps->share * static_cast<double>(between) >= static_cast<double>(needed) - 0.5;
+  if (is_new) {
+    const Row& first = rows.front().row;
+    begin_step(meter, first, steps->commonest, first.stamp == *meter.last + steps->commonest);
+  }
+  for (WaitingRow& one : rows) {
+    one.row.text = one.text;
+    place(meter, one.row, one.row.stamp);
+  }
+  find_way(meter);
+}
+
+/// @param is_of_held  The value before begins where its step does, if stamps are starts.
+void ReadingIntake::begin_step(IntakeMeter& meter, const Row& row, seconds step, bool is_of_held) {
+  const seconds interval = meter.report.shown.interval;
+  const double shorter =
+      metering::in_hours(meter.means ? meter.step : interval) / metering::in_hours(step);
+  note_step(meter, row, step);
+  is_of_held = is_of_held && meter.rows.stamps == Stamps::start;
+  meter.step = step;
+  if (is_of_held && meter.held) {
+    const Reading held = *std::exchange(meter.held, std::nullopt);
+    meter.open = {held, step, meter.conversion.is_rate};
+    if (is_longer(step, interval)) meter.open.reset();
+  }
+  if (meter.held) pass_on(meter, *std::exchange(meter.held, std::nullopt));
+  if (is_of_held && meter.open) {
+    meter.open->length = step;
+    if (!meter.open->is_rate) meter.open->value.mean_kW *= shorter;
+  }
+  if (step < interval || meter.means || !is_interval(step)) use_means(meter);
+}
+
+void ReadingIntake::note_step(IntakeMeter& meter, const Row& row, seconds step) {
+  std::vector<RowStep>& steps = meter.report.steps;
+  if (steps.size() == kStepsShown || (!steps.empty() && steps.back().step == step)) return;
+  steps.push_back({row.line, row.stamp, step});
+}
+
+/// Takes a row whose length is known.
+void ReadingIntake::place(IntakeMeter& meter, const Row& row, Instant stamp) {
+  // Another file may begin before the one in front of it ends.
+  if (std::exchange(meter.begins_file, false) && meter.newest && stamp <= *meter.newest) {
+    pass_on_all(meter);
+    meter.last.reset();
+    meter.newest.reset();
+    if (std::exchange(meter.means, std::nullopt)) use_means(meter);
+  }
+  ++meter.placed;
+  const bool follows =
+      meter.last && stamp == *meter.last + meter.step && meter.last == meter.newest;
+  if (follows) ++meter.follows;
+  const bool is_left_out = is_longer(meter.step, meter.report.shown.interval);
+  const Instant start = start_of(meter, stamp);
+  if (!is_left_out) {
+    if (!check_known_years(meter, row, start)) return;
+    if (!meter.means && !check_grid(meter, row, start)) return;
+    if (!follows) check_order(meter, row, start);
+  }
+  if (is_left_out) {
+    leave_out(meter, row);
+  } else if (meter.means) {
+    add_to_means(meter, row, stamp);
+  } else {
+    hold(meter, reading_of(meter, row, start));
+  }
+  meter.last = stamp;
+  if (!meter.newest || stamp > *meter.newest) meter.newest = stamp;
+}
+
+void ReadingIntake::leave_out(IntakeMeter& meter, const Row& row) {
+  ++meter.left_out;
+  RowStep& step = meter.report.steps.back();
+  if (step.left_out++ > 0) return;
+  refuse(row.line,
+         "meter " + in_quotes(meter.report.shown.name) + ": from here values come every " +
+             in_words(step.step) + ", which is longer than " +
+             (step.step > kIntervalMax ? "an hour" : "its interval") + "; they are left out",
+         row.text, &meter);
+}
+
+void ReadingIntake::add_to_means(IntakeMeter& meter, const Row& row, Instant stamp) {
+  if (meter.newest && stamp <= *meter.newest) return;  // reported as out of order
+  Reading value = reading_of(meter, row, stamp);
+  value.mean_kW = row.conversion.mean_kW(row.value * meter.rows.multiplier, meter.step);
+  const bool is_rate = row.conversion.is_rate;
+  if (meter.rows.stamps == Stamps::start) {
+    close_open(meter, stamp);
+    meter.open = {value, meter.step, is_rate};
+    return;
+  }
+  const bool holds = is_rate && meter.last && reaches(stamp - *meter.last, meter.step);
+  const Instant begin = holds ? *meter.last : stamp - meter.step;
+  meter.means->take({begin, stamp}, value, [&](const Reading& one) { pass_on(meter, one); });
+}
+
+/// Ends the latest value's span. @param next  Stamp of the next one, if there is one.
+void ReadingIntake::close_open(IntakeMeter& meter, std::optional<Instant> next) {
+  if (!meter.open) return;
+  const auto [value, length, is_rate] = *std::exchange(meter.open, std::nullopt);
+  const bool holds = is_rate && next && reaches(*next - value.start, length);
+  const Instant end = holds ? *next : value.start + length;
+  meter.means->take({value.start, end}, value, [&](const Reading& one) { pass_on(meter, one); });
+}
+
+bool ReadingIntake::check_known_years(IntakeMeter& meter, const Row& row, Instant start) {
+  const bool is_known = start >= Instant{} + std::chrono::days{366} &&
+                        start + meter.report.shown.interval <= metering::kLatestInstant;
+  if (!is_known) {
     refuse(row.line, "the interval lies outside " + std::string{metering::kKnownYears}, row.text,
            &meter);
-    return false;
   }
-  if ((start.time_since_epoch() - shown.phase) % shown.interval != seconds{0}) {
-    ++meter.report.off_grid;
-    refuse(row.line,
-           "meter " + in_quotes(shown.name) + ": " + metering::to_string(start) +
-               " is no start of an interval of " + in_words(shown.interval),
-           row.text, &meter);
-    return false;
-  }
-  if (meter.last && start == *meter.last) {
+  return is_known;
+}
+
+bool ReadingIntake::check_grid(IntakeMeter& meter, const Row& row, Instant start) {
+  const MeterInFile& shown = meter.report.shown;
+  if ((start.time_since_epoch() - shown.phase) % shown.interval == seconds{0}) return true;
+  ++meter.report.off_grid;
+  const seconds beside = std::chrono::abs(beside_grid(shown.interval, start));
+  const bool is_near = kToleranceShare * beside <= shown.interval && beside > meter.tolerance;
+  refuse(
+      row.line,
+      "meter " + in_quotes(shown.name) + ": " + metering::to_string(start) +
+          " is no start of an interval of " + in_words(shown.interval) +
+          (is_near ? "; if its stamps are late or early by so little, write grid_tolerance = \"" +
+                         std::to_string(beside.count()) + "s\" to its [[meter]]"
+                   : ""),
+      row.text, &meter);
+  return false;
+}
+
+/// Reports a row that is not later than the one before.
+void ReadingIntake::check_order(IntakeMeter& meter, const Row& row, Instant start) {
+  if (!meter.last) return;
+  const std::string name = "meter " + in_quotes(meter.report.shown.name) + ": ";
+  if (start == start_of(meter, *meter.last)) {
     ++meter.report.duplicates;
     refuse(row.line,
-           "meter " + in_quotes(shown.name) + ": interval " + metering::to_string(start) +
-               " comes twice; the first value stays",
+           name + "interval " + metering::to_string(start) + " comes twice; the first value stays",
            row.text);
-  } else if (meter.newest && start < *meter.newest) {
+  } else if (start < start_of(meter, *meter.newest)) {
     ++meter.report.unsorted;
     refuse(row.line,
-           "meter " + in_quotes(shown.name) + ": " + metering::to_string(start) +
+           name + metering::to_string(start) +
                " comes after a later interval; the file is not in order of time",
            row.text);
   }
-  if (!meter.earliest || start < *meter.earliest) meter.earliest = start;
-  return true;
 }
 
 void ReadingIntake::keep_sample(IntakeMeter& meter, const Row& row) {
@@ -209,21 +445,19 @@ void ReadingIntake::keep_sample(IntakeMeter& meter, const Row& row) {
 
 Result<FileReport> ReadingIntake::end_file(std::string_view name) {
   for (IntakeMeter& meter : meters_) {
-    const std::uint64_t readings = meter.report.readings - meter.readings_before;
-    const bool is_first = meter.readings_before == 0;
-    const bool follows = 2 * meter.follows >= readings || readings < kHeadRows;
-    if (!is_first && !follows) {
+    settle(meter);
+    const bool follows = 2 * meter.follows >= meter.placed || meter.placed < kHeadRows;
+    const bool fits = 2 * meter.left_out <= meter.placed && (follows || meter.is_irregular);
+    if (meter.has_earlier_file && !fits) {
       return failure(ErrorCode::malformed,
                      in_quotes(name) + ": meter " + in_quotes(meter.rows.name) +
                          " does not come every " + in_words(meter.report.shown.interval) +
                          " as in the file before; give it a [[meter]] of its own, or bring the "
                          "files to one interval");
     }
-    meter.readings_before = meter.report.readings;
-    meter.follows = 0;
-    // Another file may begin before this one ends.
-    meter.newest_of_all = std::max(meter.newest_of_all, std::exchange(meter.newest, {}));
-    meter.last.reset();
+    meter.has_earlier_file = meter.has_earlier_file || meter.placed > 0;
+    meter.placed = meter.follows = meter.left_out = 0;
+    meter.begins_file = true;
   }
   LineIssues none;
   none.listed_max = report_.issues.listed_max;
@@ -231,18 +465,32 @@ Result<FileReport> ReadingIntake::end_file(std::string_view name) {
                     std::exchange(report_.others, {})};
 }
 
+/// Passes on the latest values, whose lengths the next one would show.
+void ReadingIntake::pass_on_all(IntakeMeter& meter) {
+  if (meter.held) pass_on(meter, *std::exchange(meter.held, std::nullopt));
+  close_open(meter, {});
+  if (meter.means) meter.means->finish([&](const Reading& one) { pass_on(meter, one); });
+}
+
+/// Passes on what waits.
+void ReadingIntake::end_meter(IntakeMeter& meter) {
+  if (!meter.grid_known && !meter.refused && !meter.head.empty()) {
+    if (meter.rows.counter) {
+      finish_counter(meter);
+    } else {
+      begin_meter(meter);
+    }
+  }
+  settle(meter);
+  pass_on_all(meter);
+}
+
 ReadingsReport ReadingIntake::finish() {
   for (IntakeMeter& meter : meters_) {
-    if (!meter.grid_known && !meter.refused && !meter.head.empty()) {
-      if (meter.rows.counter) {
-        finish_counter(meter);
-      } else {
-        begin_meter(meter);
-      }
-    }
-    if (const auto newest = std::max(meter.newest, meter.newest_of_all)) {
+    end_meter(meter);
+    if (meter.first_start) {
       meter.report.span =
-          metering::TimeSpan{*meter.earliest, *newest + meter.report.shown.interval};
+          metering::TimeSpan{*meter.first_start, *meter.last_start + meter.report.shown.interval};
     }
     report_.readings += meter.report.readings;
     report_.meters.push_back(std::move(meter.report));
@@ -250,18 +498,46 @@ ReadingsReport ReadingIntake::finish() {
   return std::move(report_);
 }
 
-void ReadingIntake::finish_counter(IntakeMeter& meter) {
-  if (!find_grid(meter)) return;
+/// A register may be logged at any time; its interval is that of its rows, or one that they fill.
+bool ReadingIntake::find_register_interval(IntakeMeter& meter) {
   MeterInFile& shown = meter.report.shown;
-  shown.phase = seconds{0};
+  shown.interval_inferred = !meter.rows.interval;
+  if (meter.rows.interval) {
+    shown.interval = *meter.rows.interval;
+    return true;
+  }
+  const auto steps = steps_of(
+      stamps_of(meter.samples, kRegisterRows, [](const auto& sample) { return sample.time; }));
+  if (!steps) {
+    return refuse_meter(meter,
+                        "has one time stamp only, so its interval cannot be seen; declare it");
+  }
+  if (steps->is_regular() && is_interval(steps->commonest)) {
+    shown.interval = steps->commonest;
+    return true;
+  }
+  const seconds step =
+      steps->is_regular() ? steps->commonest : std::max(steps->median, kRegisterInterval);
+  const auto interval = interval_for(step);
+  if (interval) {
+    shown.interval = *interval;
+    return true;
+  }
+  return refuse_meter(meter,
+                      "comes every " + in_words(step) + "; recald needs values of an hour or less");
+}
+
+void ReadingIntake::finish_counter(IntakeMeter& meter) {
+  if (!find_register_interval(meter)) return;
+  const MeterInFile& shown = meter.report.shown;
   if (sink_.on_meter) sink_.on_meter(shown);
-  for (const Reading& reading : metering::readings_from_register(
-           shown.meter, meter.samples, shown.interval, *meter.rows.counter)) {
-    ++meter.report.readings;
-    if (std::isnan(reading.mean_kW)) ++meter.report.blanks;
-    if (!meter.earliest) meter.earliest = reading.start;
-    meter.newest = reading.start;
-    if (sink_.on_reading) sink_.on_reading(reading);
+  metering::CounterSettings settings = *meter.rows.counter;
+  settings.digit_kWh = meter.conversion.factor * meter.rows.multiplier;
+  const auto samples = metering::with_rests(std::move(meter.samples));
+  for (const Reading& reading :
+       metering::readings_from_register(shown.meter, samples, shown.interval, settings,
+                                        meter.rows.resets, &meter.report.register_notes)) {
+    pass_on(meter, reading);
   }
 }
 

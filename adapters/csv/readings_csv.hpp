@@ -12,8 +12,9 @@
 
 #include "adapters/csv/line_issues.hpp"
 #include "adapters/csv/other_meters.hpp"
+#include "adapters/csv/row_steps.hpp"
 #include "core/metering/reading.hpp"
-#include "core/metering/registers/counter.hpp"
+#include "core/metering/registers/interval_book.hpp"
 #include "core/metering/units.hpp"
 #include "core/result.hpp"
 
@@ -30,11 +31,16 @@ struct MeterRows {
   /// If set, values are readings of a cumulative register in an energy unit. Readings of such a
   /// meter come at the end of the file; its samples are held until then.
   std::optional<metering::CounterSettings> counter;
+  metering::ResetTimes resets = {};  ///< Of a counter that sets itself to zero.
+  /// Stamps this far beside the grid of intervals are put on it; at most a tenth of the interval.
+  std::chrono::seconds grid_tolerance{0};
 };
 
 struct ReadingsOptions {
   std::vector<MeterRows> meters;
   bool add_unlisted_meters = false;  ///< Append meters of the file that are not listed.
+  /// Of meters without a tolerance: whether the largest one is taken where stamps need it.
+  bool finds_tolerance = false;
   std::size_t issues_listed_max = 100;
 };
 
@@ -48,9 +54,18 @@ struct MeterInFile {
   std::string unit;  ///< From its first row.
 };
 
+/// A row as it is, whatever its interval.
+struct RawRow {
+  std::uint32_t meter;
+  metering::Instant stamp;
+  double value;  ///< In kW of a rate, else in kWh; NaN: blank.
+  bool is_rate;
+};
+
 struct ReadingsSink {
   std::function<void(const MeterInFile&)> on_meter;
   std::function<void(const metering::Reading&)> on_reading;
+  std::function<void(const RawRow&)> on_row = {};
 };
 
 /// Totals of one meter.
@@ -62,7 +77,11 @@ struct MeterReport {
       0;  ///< Older than the previous row; passed on, since the closer handles late ones.
   std::uint64_t duplicates = 0;  ///< Same stamp as the previous row; passed on, the closer decides.
   std::uint64_t off_grid = 0;    ///< Refused.
-  std::uint64_t refused = 0;     ///< Rows known to be of this meter that were refused.
+  /// How far stamps lay beside the grid that they were put on, at most.
+  std::chrono::seconds beside_max{0};
+  std::vector<RowStep> steps;  ///< In order; the first is the one at the beginning. Up to twenty.
+  std::vector<metering::RegisterNote> register_notes;
+  std::uint64_t refused = 0;               ///< Rows known to be of this meter that were refused.
   std::vector<LineIssue> first_refused;    ///< Up to three of them.
   std::optional<metering::TimeSpan> span;  ///< From the earliest start to the latest end.
 };

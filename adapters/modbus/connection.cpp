@@ -49,13 +49,13 @@ void set_timeout(modbus_t* context, milliseconds timeout) {
 
 /// The PDU of a reply to any function, or empty while bytes are missing.
 tl::expected<std::vector<std::uint8_t>, ReadFailure> whole_pdu(
-    const std::vector<std::uint8_t>& frame, std::uint8_t unit, bool is_serial) {
+    const std::vector<std::uint8_t>& frame, std::uint8_t unit, bool is_rtu) {
   constexpr std::size_t kHeader = 7;
   // A serial frame does not state its length: it is complete when its checksum fits.
-  const std::size_t head = is_serial ? 1 : kHeader;
-  const std::size_t tail = is_serial ? 2 : 0;
+  const std::size_t head = is_rtu ? 1 : kHeader;
+  const std::size_t tail = is_rtu ? 2 : 0;
   if (frame.size() < head + 2 + tail) return {};
-  if (is_serial) {
+  if (is_rtu) {
     const std::span<const std::uint8_t> body{frame.data(), frame.size() - tail};
     const unsigned stated = static_cast<unsigned>(frame.back()) << 8 | frame[frame.size() - 2];
     if (crc16(body) != stated) return {};
@@ -72,6 +72,28 @@ tl::expected<std::vector<std::uint8_t>, ReadFailure> whole_pdu(
   }
   return std::vector<std::uint8_t>(frame.begin() + static_cast<std::ptrdiff_t>(head),
                                    frame.end() - static_cast<std::ptrdiff_t>(tail));
+}
+
+/// The line is idle, so a dozen bytes fit into its buffer.
+bool send_whole(int descriptor, const std::vector<std::uint8_t>& frame) {
+  const auto sent = ::send(descriptor, frame.data(), frame.size(), MSG_NOSIGNAL);
+  return sent == static_cast<ssize_t>(frame.size());
+}
+
+/// Appends what arrives before the deadline. @return what ended it, or nothing
+std::optional<ReadFailure> read_more(int descriptor, steady_clock::time_point deadline,
+                                     std::vector<std::uint8_t>& frame) {
+  const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
+  pollfd waiting{descriptor, POLLIN, 0};
+  if (left <= milliseconds{0} || ::poll(&waiting, 1, static_cast<int>(left.count())) <= 0) {
+    return ReadFailure{ReadFault::timeout, 0, "no complete reply before the deadline"};
+  }
+  std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> bytes{};
+  const auto received = ::read(descriptor, bytes.data(), bytes.size());
+  if (received <= 0) return ReadFailure{ReadFault::closed, 0, "connection lost"};
+  frame.insert(frame.end(), bytes.begin(), bytes.begin() + received);
+  if (frame.size() <= MODBUS_MAX_ADU_LENGTH) return {};
+  return ReadFailure{ReadFault::mismatch, 0, "a reply longer than any frame may be"};
 }
 
 int unread_bytes(int descriptor) {
@@ -108,6 +130,11 @@ Connection::Connection(Endpoint endpoint)
     : endpoint_(std::move(endpoint)),
       transaction_(static_cast<std::uint16_t>(std::random_device{}())) {}
 Connection::~Connection() = default;
+
+bool Connection::has_rtu_frames() const {
+  const auto* const tcp = std::get_if<TcpEndpoint>(&endpoint_);
+  return tcp == nullptr || tcp->has_rtu_frames;
+}
 
 bool Connection::is_open() const { return context_ != nullptr; }
 
@@ -178,22 +205,45 @@ bool Connection::send(std::span<const std::uint8_t> request) {
     return modbus_send_raw_request(context_->modbus, request.data(),
                                    static_cast<int>(request.size())) >= 0;
   }
+  if (has_rtu_frames()) {
+    std::vector<std::uint8_t> frame{request.begin(), request.end()};
+    const std::uint16_t sum = crc16(frame);
+    frame.push_back(static_cast<std::uint8_t>(sum & 0xFFU));
+    frame.push_back(static_cast<std::uint8_t>(sum >> 8U));
+    return send_whole(modbus_get_socket(context_->modbus), frame);
+  }
   if (++transaction_ == 0) ++transaction_;
   const auto high = [](std::size_t word) { return static_cast<std::uint8_t>(word >> 8U); };
   const auto low = [](std::size_t word) { return static_cast<std::uint8_t>(word & 0xFFU); };
   std::vector<std::uint8_t> frame{high(transaction_),   low(transaction_),  0, 0,
                                   high(request.size()), low(request.size())};
   frame.insert(frame.end(), request.begin(), request.end());
-  // The line is idle, so a dozen bytes fit into its buffer.
-  const auto sent =
-      ::send(modbus_get_socket(context_->modbus), frame.data(), frame.size(), MSG_NOSIGNAL);
-  return sent == static_cast<ssize_t>(frame.size());
+  return send_whole(modbus_get_socket(context_->modbus), frame);
 }
 
 bool Connection::answers(std::span<const std::uint8_t> frame) {
   const auto number = static_cast<std::uint16_t>(frame[0] << 8U | frame[1]);
   if (number == transaction_) return echoes_ = true;
   return number == 0 && !echoes_;
+}
+
+/// libmodbus speaks RTU on serial ports only. The request says how long the reply is.
+ReadResult Connection::receive_rtu(const ReadRequest& request, milliseconds timeout) {
+  constexpr std::size_t kExceptionBytes = 5;  // unit, function, code, check sum
+  const std::size_t whole = kExceptionBytes + 2u * request.count;
+  const int descriptor = modbus_get_socket(context_->modbus);
+  const auto deadline = steady_clock::now() + timeout;
+  std::vector<std::uint8_t> frame;
+  const auto is_whole = [&] {
+    const bool is_exception = frame.size() >= 2 && (frame[1] & 0x80U) != 0;
+    return frame.size() >= (is_exception ? kExceptionBytes : whole);
+  };
+  while (!is_whole()) {
+    if (auto failure = read_more(descriptor, deadline, frame)) {
+      return tl::unexpected(std::move(*failure));
+    }
+  }
+  return check_rtu_reply(frame, request);
 }
 
 ReadResult Connection::receive(const ReadRequest& request, milliseconds timeout) {
@@ -242,7 +292,8 @@ ReadResult Connection::exchange(const ReadRequest& request, milliseconds timeout
   if (!send(bytes)) {
     return failed(ReadFault::closed, fmt::format("connection lost ({})", words_of(errno)));
   }
-  ReadResult result = receive(request, timeout);
+  const bool is_rtu_over_tcp = has_rtu_frames() && !is_serial();
+  ReadResult result = is_rtu_over_tcp ? receive_rtu(request, timeout) : receive(request, timeout);
   if (const auto* serial = std::get_if<SerialPort>(&endpoint_)) {
     line_free_ = steady_clock::now() + line_time(*serial, 7) / 2;
   }
@@ -251,12 +302,14 @@ ReadResult Connection::exchange(const ReadRequest& request, milliseconds timeout
 
 void Connection::recover_from(const ReadFailure& failure, const ReadRequest& request) {
   if (failure.fault == ReadFault::exception) return;
+  // A serial server may pass a late reply on to the next connection.
+  const bool may_come_late = has_rtu_frames() && failure.fault == ReadFault::timeout;
+  if (may_come_late) timed_out_ = request;
   if (!is_serial() || failure.fault == ReadFault::closed) {
     close();
     return;
   }
   drain();
-  if (failure.fault == ReadFault::timeout) timed_out_ = request;
 }
 
 ReadResult Connection::read(const ReadRequest& request, milliseconds timeout) {
@@ -279,20 +332,11 @@ tl::expected<std::vector<std::uint8_t>, ReadFailure> Connection::receive_pdu(std
   const auto deadline = steady_clock::now() + timeout;
   std::vector<std::uint8_t> frame;
   for (;;) {
-    const auto whole = TRY(whole_pdu(frame, unit, is_serial()));
-    if (!whole.empty() && (is_serial() || answers(frame))) return whole;
+    const auto whole = TRY(whole_pdu(frame, unit, has_rtu_frames()));
+    if (!whole.empty() && (has_rtu_frames() || answers(frame))) return whole;
     if (!whole.empty()) frame.clear();  // late, of another request
-    const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
-    pollfd waiting{descriptor, POLLIN, 0};
-    if (left <= milliseconds{0} || ::poll(&waiting, 1, static_cast<int>(left.count())) <= 0) {
-      return failed(ReadFault::timeout, "no complete reply before the deadline");
-    }
-    std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> bytes{};
-    const auto received = ::read(descriptor, bytes.data(), bytes.size());
-    if (received <= 0) return failed(ReadFault::closed, "connection lost");
-    frame.insert(frame.end(), bytes.begin(), bytes.begin() + received);
-    if (frame.size() > MODBUS_MAX_ADU_LENGTH) {
-      return failed(ReadFault::mismatch, "a reply longer than any frame may be");
+    if (auto failure = read_more(descriptor, deadline, frame)) {
+      return tl::unexpected(std::move(*failure));
     }
   }
 }

@@ -25,6 +25,7 @@ using std::chrono::milliseconds;
 struct TcpEndpoint {
   std::string host;  ///< Name or address, IPv4 or IPv6.
   std::uint16_t port = 502;
+  bool has_rtu_frames = false;  ///< A serial server passes the frames of its line on as they are.
   milliseconds connect_timeout{3000};
   milliseconds connect_delay{0};  ///< Some gateways drop what arrives right after a connect.
 
@@ -84,6 +85,8 @@ class Connection {
   /// Sends unit and PDU as a frame of either transport.
   [[nodiscard]] bool send(std::span<const std::uint8_t> request);
   [[nodiscard]] ReadResult receive(const ReadRequest& request, milliseconds timeout);
+  /// A serial frame over TCP.
+  [[nodiscard]] ReadResult receive_rtu(const ReadRequest& request, milliseconds timeout);
   /// Whether a TCP frame answers the newest request, and not one before it.
   [[nodiscard]] bool answers(std::span<const std::uint8_t> frame);
   [[nodiscard]] tl::expected<IdentityPart, ReadFailure> identify_from(std::uint8_t unit,
@@ -93,13 +96,15 @@ class Connection {
       std::uint8_t unit, milliseconds timeout);
   void recover_from(const ReadFailure& failure, const ReadRequest& request);
   [[nodiscard]] bool is_serial() const { return std::holds_alternative<SerialPort>(endpoint_); }
+  /// Whether frames end with a check sum and have no transaction.
+  [[nodiscard]] bool has_rtu_frames() const;
   void wait_for_silence();
   void drain();
 
   Endpoint endpoint_;
   std::unique_ptr<Context> context_;
   std::chrono::steady_clock::time_point line_free_{};  ///< Serial: silence ends here.
-  std::optional<ReadRequest> timed_out_;               ///< Serial: its reply may still arrive.
+  std::optional<ReadRequest> timed_out_;               ///< RTU frames: its reply may still arrive.
   std::uint16_t transaction_;  ///< TCP: of the newest request; also after another connection.
   bool echoes_ = false;        ///< TCP: the device has sent one back. Some always send 0.
 };

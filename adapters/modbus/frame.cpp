@@ -139,6 +139,11 @@ bool is_busy(std::uint8_t exception) { return exception == 0x05 || exception == 
 
 bool is_from_gateway(std::uint8_t exception) { return exception == 0x0A || exception == 0x0B; }
 
+bool is_illegal_span(const ReadFailure& failure) {
+  return failure.fault == ReadFault::exception &&
+         (failure.exception_code == 0x02 || failure.exception_code == 0x03);
+}
+
 bool is_refusal(const ReadFailure& failure) {
   return failure.fault == ReadFault::exception && !is_busy(failure.exception_code) &&
          !is_from_gateway(failure.exception_code);

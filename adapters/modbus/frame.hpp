@@ -49,6 +49,9 @@ namespace recald::modbus {
 /// Exceptions 10 and 11: a gateway answered because the unit did not.
 [[nodiscard]] bool is_from_gateway(std::uint8_t exception);
 
+/// Exceptions 2 and 3: the unit does not have some of the registers, or not so many of them.
+[[nodiscard]] bool is_illegal_span(const ReadFailure& failure);
+
 /// Whether the unit itself refused to serve this request.
 [[nodiscard]] bool is_refusal(const ReadFailure& failure);
 

@@ -113,6 +113,22 @@ Result<std::vector<PlannedRead>> plan_reads(const std::vector<RegisterField>& fi
   return reads;
 }
 
+void add_single_reads(std::vector<PlannedRead>& reads, const std::vector<RegisterField>& fields) {
+  const std::size_t planned = reads.size();
+  for (std::size_t i = 0; i < planned; ++i) {
+    std::vector<RegisterField> some;
+    for (const std::size_t field : reads[i].fields) some.push_back(fields[field]);
+    const auto single = plan_reads(some, reads[i].function, {.one_request_per_field = true});
+    if (!single || single->size() < 2) continue;
+    reads[i].may_split = true;
+    for (PlannedRead read : *single) {
+      for (std::size_t& field : read.fields) field = reads[i].fields[field];
+      read.instead_of = i;
+      reads.push_back(std::move(read));
+    }
+  }
+}
+
 std::vector<FieldValue> decode_read(const std::vector<RegisterField>& fields,
                                     const PlannedRead& read, std::span<const std::uint16_t> words) {
   std::vector<FieldValue> values;

@@ -68,6 +68,10 @@ struct PlannedRead {
   std::uint16_t address;
   std::uint16_t count;
   std::vector<std::size_t> fields;  ///< Indices into the list that was planned.
+  /// The read of the plan in whose place it is made, once a device has refused that one; nothing of
+  /// an ordinary read.
+  std::optional<std::size_t> instead_of = {};
+  bool may_split = false;  ///< Others can be made instead.
 };
 
 /// Plans as few reads as the limits allow, in order of address. A field is never split. Fields with
@@ -78,6 +82,12 @@ struct PlannedRead {
 [[nodiscard]] Result<std::vector<PlannedRead>> plan_reads(const std::vector<RegisterField>& fields,
                                                           Function function,
                                                           const ReadLimits& limits);
+
+/// Appends to a plan what is read in the place of a read of several fields that a device refuses
+/// because it lacks registers between them: one read a field, or a group of fields with one scale
+/// factor. Reads of the plan keep their places.
+/// @param reads  Planned over `fields`.
+void add_single_reads(std::vector<PlannedRead>& reads, const std::vector<RegisterField>& fields);
 
 struct FieldValue {
   std::size_t field;  ///< Index, as in `PlannedRead::fields`.

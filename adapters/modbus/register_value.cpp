@@ -130,6 +130,22 @@ int word_count(RegisterType type) {
   return 1;
 }
 
+std::optional<double> wraps_at(const ValueFormat& format) {
+  if (format.mask || format.offset != 0.0) return {};
+  switch (format.type) {
+    case RegisterType::u16:
+      return 65'536.0 * format.scale;
+    case RegisterType::u32:
+      return 4'294'967'296.0 * format.scale;
+    case RegisterType::bcd16:
+      return 1e4 * format.scale;
+    case RegisterType::bcd32:
+      return 1e8 * format.scale;
+    default:
+      return {};
+  }
+}
+
 std::vector<std::uint16_t> float64_words(double value) {
   const auto bits = std::bit_cast<std::uint64_t>(value);
   std::vector<std::uint16_t> words;

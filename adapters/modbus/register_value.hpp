@@ -78,6 +78,11 @@ struct DecodedValue {
 [[nodiscard]] tl::expected<DecodedValue, ValueFault> decode(std::span<const std::uint16_t> words,
                                                             const ValueFormat& format);
 
+/// Where a counter of this format begins again at zero, if it counts to the end of its registers;
+/// in the field's unit. Nothing for a float, a signed or a masked type, and for 64 bits, which
+/// last.
+[[nodiscard]] std::optional<double> wraps_at(const ValueFormat& format);
+
 /// The registers of a 64-bit float, in order ABCD.
 [[nodiscard]] std::vector<std::uint16_t> float64_words(double value);
 

@@ -85,6 +85,7 @@ struct CommitCounts {
   int weaker = 0;                            ///< Worse than the stored ones.
   std::vector<metering::Reading> conflicts;  ///< Equally good, but another value; the first stays.
   std::vector<bool> was_taken;               ///< One per interval of the batch.
+  std::string doubt = {};  ///< Why readings that were sent are not believed, in words; else empty.
 };
 
 class IntervalStore {

@@ -225,8 +225,11 @@ class FeedBuilder {
                      "the reading at " + metering::to_string(Instant{seconds{*since}}) + " is " +
                          csv::in_quotes(text) + ", more than any meter counts");
     }
-    readings_.push_back({Instant{seconds{*since}}, meter,
-                         value.value_or(std::numeric_limits<double>::quiet_NaN())});
+    const auto quality = whole_number(text_of(child_named(node, "ReadingQuality"), "quality"));
+    readings_.push_back(
+        {Instant{seconds{*since}}, meter,
+         static_cast<std::uint8_t>(std::clamp<std::int64_t>(quality.value_or(0), 0, 255)),
+         value.value_or(std::numeric_limits<double>::quiet_NaN())});
     return {};
   }
 
@@ -260,7 +263,7 @@ class FeedRows final : public RowSource {
     row = {};
     row.number = number_ + 1;
     if (number_ == 0) {
-      row.cells = {"timestamp", "meter", "value", "unit"};
+      row.cells = {"timestamp", "meter", "value", "unit", "quality"};
     } else if (number_ > feed_.readings.size()) {
       return false;
     } else {
@@ -273,7 +276,8 @@ class FeedRows final : public RowSource {
         const auto end = std::to_chars(text.data(), text.data() + text.size(), reading.value).ptr;
         value_.assign(text.data(), end);
       }
-      row.cells = {stamp_, meter.name, value_, meter.unit};
+      quality_ = std::to_string(reading.quality);
+      row.cells = {stamp_, meter.name, value_, meter.unit, quality_};
       text_ = stamp_ + ", " + meter.name + ", " + value_ + ", " + meter.unit;
       row.text = text_;
     }
@@ -288,6 +292,7 @@ class FeedRows final : public RowSource {
   std::uint64_t number_ = 0;  ///< Rows returned so far.
   std::string stamp_;
   std::string value_;
+  std::string quality_;
   std::string text_;
   std::optional<Error> error_;
 };

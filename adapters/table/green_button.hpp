@@ -27,8 +27,9 @@ struct FeedMeter {
 
 struct FeedReading {
   metering::Instant start;
-  std::uint32_t meter;  ///< In `Feed::meters`.
-  double value;         ///< In the meter's unit, the power of ten applied.
+  std::uint32_t meter;   ///< In `Feed::meters`.
+  std::uint8_t quality;  ///< As ESPI counts them; 0, valid, where the feed does not say.
+  double value;          ///< In the meter's unit, the power of ten applied.
 };
 
 struct Feed {

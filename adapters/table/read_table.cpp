@@ -198,7 +198,8 @@ class TableReader {
     }
     for (const auto& [column, into] :
          {std::pair{&shape_.time_column, &time_}, std::pair{&shape_.clock_column, &clock_},
-          std::pair{&shape_.meter_column, &meter_}, std::pair{&shape_.unit_column, &unit_}}) {
+          std::pair{&shape_.meter_column, &meter_}, std::pair{&shape_.unit_column, &unit_},
+          std::pair{&shape_.flag_column, &flag_}}) {
       if (auto found = place(*column, *into); !found) return found;
     }
     for (std::size_t i = 0; i < meters_.size(); ++i) {
@@ -462,9 +463,10 @@ class TableReader {
                      .value = kAbsent,
                      .conversion = meter.conversion,
                      .text = row.text};
+    if (flag_ != kNone && is_blank(text)) count_flag(cell(row, flag_), "");
     if (is_blank(text)) {
       if (!text.empty()) facts_.add_word(text);
-    } else {
+    } else if (flag_ == kNone || take_flag(row, text, reading)) {
       auto value = parse_cell(text, shape_.decimal);
       if (!value) value = with_unit(text, meter, reading);
       if (!value || std::abs(*value) > csv::kValueMax) {
@@ -496,6 +498,30 @@ class TableReader {
     return value;
   }
 
+  /// @return whether the value counts
+  bool take_flag(const TableRow& row, std::string_view text, csv::Row& reading) {
+    const std::string_view flag = cell(row, flag_);
+    count_flag(flag, text);
+    if (std::ranges::find(shape_.missing_flags, flag) != shape_.missing_flags.end()) return false;
+    if (std::ranges::find(shape_.estimated_flags, flag) == shape_.estimated_flags.end())
+      return true;
+    // Its sum may be right, its shape is the estimate's.
+    reading.validity = metering::Validity::scaled;
+    reading.reasons = metering::Reason::estimated;
+    return true;
+  }
+
+  void count_flag(std::string_view flag, std::string_view text) {
+    auto known = std::ranges::find(facts_.flags, flag, &FlagCount::flag);
+    if (known == facts_.flags.end()) {
+      if (facts_.flags.size() == kFlagsMax) return;
+      facts_.flags.push_back({.flag = std::string{flag}});
+      known = facts_.flags.end() - 1;
+    }
+    ++known->rows;
+    if (text.find_first_not_of("0.,") == std::string_view::npos) ++known->empty;
+  }
+
   RowSource& rows_;
   std::string name_;
   const TableShape& shape_;
@@ -508,6 +534,7 @@ class TableReader {
   std::size_t clock_ = kNone;
   std::size_t meter_ = kNone;
   std::size_t unit_ = kNone;
+  std::size_t flag_ = kNone;
   std::map<std::string, std::size_t, std::less<>> by_name_;
   std::size_t last_meter_ = 0;
   std::vector<ClockReader> clocks_;  ///< One for the table, or one per meter of a long table.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "adapters/csv/reading_intake.hpp"
+#include "adapters/table/flags.hpp"
 #include "adapters/table/row_source.hpp"
 #include "adapters/table/table_shape.hpp"
 
@@ -27,7 +28,7 @@ struct ClockChange {
   std::uint64_t second = 0;   ///< … and the second.
 };
 
-/// What was found out about clocks while a table was read.
+/// What was found out about clocks and flags while a table was read.
 struct ClockFacts {
   std::uint64_t naive = 0;    ///< Stamps without an offset.
   std::uint64_t skipped = 0;  ///< Of these, times that the clock skips.
@@ -38,6 +39,7 @@ struct ClockFacts {
   void add_word(std::string_view word) {
     if (words++ == 0) first_word = word;
   }
+  std::vector<FlagCount> flags = {};  ///< Of the flag column, the first `kFlagsMax`.
 };
 
 /// The intake's settings for these meters.

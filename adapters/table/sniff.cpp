@@ -12,6 +12,7 @@
 #include "adapters/table/cells/decimal_sign.hpp"
 #include "adapters/table/cells/words.hpp"
 #include "adapters/table/clock_labels.hpp"
+#include "adapters/table/flags.hpp"
 #include "adapters/table/header_rows.hpp"
 #include "adapters/table/meter_columns.hpp"
 #include "adapters/table/read_table.hpp"
@@ -58,6 +59,7 @@ class TableSniffer {
     find_meters();
     TRY(take_told_columns());
     TRY(find_decimal());
+    find_flags();
     TRY(list_values());
     leave_out_same_loads();
     return std::move(guess_);
@@ -468,7 +470,8 @@ class TableSniffer {
         continue;
       }
       if (!kinds.is_mostly(kinds.words) || is_column_of_times(kinds_[column])) continue;
-      const bool may_name = kinds.repeats() && !meanings.has(Meaning::status);
+      const bool may_name =
+          kinds.repeats() && !meanings.has(Meaning::status) && !says_quality(column);
       if (may_name && (is_called_so || (is_long && kinds.texts.size() > 1)))
         names.push_back(column);
     }
@@ -490,6 +493,31 @@ class TableSniffer {
     if (unit_ != kNowhere) guess_.shape.unit_column = column_text(unit_);
   }
 
+  /// Whether the texts of a column say how its values came about.
+  [[nodiscard]] bool says_quality(std::size_t column) const {
+    const std::set<std::string>& texts = kinds_[column].texts;
+    return are_flags(std::vector<std::string_view>{texts.begin(), texts.end()});
+  }
+
+  /// Finds a column of few short texts that says how good each value is.
+  void find_flags() {
+    constexpr std::size_t kFlagLength = 24;
+    for (std::size_t column = 0; column < width_; ++column) {
+      const ColumnKinds& kinds = kinds_[column];
+      const bool is_other = column == times_.column || column == clock_ || column == meter_ ||
+                            column == unit_ || column == unit_of_all_ ||
+                            std::ranges::find(values_, column) != values_.end();
+      const bool are_short =
+          kinds.texts.size() <= kFlagsMax &&
+          std::ranges::all_of(kinds.texts, [](const auto& t) { return t.size() <= kFlagLength; });
+      if (is_other || kinds.filled == 0 || kinds.words == 0 || !are_short) continue;
+      if (!is_flag_header(header_text(column)) && !says_quality(column)) continue;
+      guess_.shape.flag_column = column_text(column);
+      flag_ = column;
+      return;
+    }
+  }
+
   Result<void> find_decimal() {
     if (hints_.decimal) {
       guess_.shape.decimal = *hints_.decimal;
@@ -509,7 +537,8 @@ class TableSniffer {
   Result<void> list_values() {
     above_ = unit_above(std::span{rows_}.first(header_.above));
     for (std::size_t column = 0; column < width_; ++column) {
-      if (column == times_.column || column == clock_ || column == meter_ || column == unit_) {
+      if (column == times_.column || column == clock_ || column == meter_ || column == unit_ ||
+          column == flag_) {
         continue;
       }
       const std::string text = column_text(column);
@@ -660,6 +689,7 @@ class TableSniffer {
   std::size_t meter_ = kNowhere;
   std::size_t unit_ = kNowhere;         ///< Of a long table.
   std::size_t unit_of_all_ = kNowhere;  ///< Of any other table.
+  std::size_t flag_ = kNowhere;
   std::vector<ColumnKinds> kinds_;
   std::vector<std::string> why_;  ///< Of columns of numbers: why they are no meter's.
   std::vector<std::size_t> values_;

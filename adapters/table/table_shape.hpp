@@ -47,6 +47,9 @@ struct TableShape {
   std::string timezone;      ///< For stamps without an offset; empty: the site's.
   std::string meter_column;  ///< One row per meter: its name. Empty: one column per meter.
   std::string unit_column;   ///< Units, in a table of one row per meter. Empty: as declared.
+  std::string flag_column;   ///< How good each value is; empty: nothing says it.
+  std::vector<std::string> missing_flags = {};    ///< There: what beside them is no data.
+  std::vector<std::string> estimated_flags = {};  ///< … and what beside them was not measured.
   bool operator==(const TableShape&) const = default;
 };
 
@@ -55,7 +58,10 @@ struct TableShape {
   return {.container = Container::green_button,
           .time_column = "timestamp",
           .meter_column = "meter",
-          .unit_column = "unit"};
+          .unit_column = "unit",
+          .flag_column = "quality",
+          // Edited by hand, estimated by a reference day or by a line, projected, mixed (ESPI).
+          .estimated_flags = {"7", "8", "9", "12", "13"}};
 }
 
 /// One meter of a table: its rows, by `name` in the meter column, or its column.

@@ -13,10 +13,10 @@ constexpr std::array<std::string_view, 5> kValidities{"ok", "missing", "filled",
                                                       "suspect"};
 
 // In order of the bits. The strings are stable: exports and other programs use them.
-constexpr std::array<std::string_view, 22> kReasons{
-    "timeout", "exception", "crc",      "mismatch",  "sentinel", "nan",   "range", "spike",
-    "stuck",   "negative",  "zero_run", "sum_check", "rollover", "wrap",  "reset", "jump",
-    "bounce",  "clock",     "partial",  "coarse",    "replay",   "manual"};
+constexpr std::array<std::string_view, 23> kReasons{
+    "timeout", "exception", "crc",      "mismatch",  "sentinel", "nan",    "range",    "spike",
+    "stuck",   "negative",  "zero_run", "sum_check", "rollover", "wrap",   "reset",    "jump",
+    "bounce",  "clock",     "partial",  "coarse",    "replay",   "manual", "estimated"};
 
 }  // namespace
 

@@ -54,6 +54,7 @@ enum class Reason : std::uint32_t {
   coarse = 1u << 19,
   replay = 1u << 20,
   manual = 1u << 21,
+  estimated = 1u << 22,  ///< By the source, which says so.
 };
 
 constexpr Reason operator|(Reason a, Reason b) {
@@ -100,7 +101,7 @@ struct Meter {
   std::chrono::seconds phase{0};
   std::optional<double> rated_kW;  ///< Largest plausible mean power; absent: no such check.
   /// Longest run of exact zeros that counts as load; a longer one is a dead meter. Absent:
-  /// any run is load.
+  /// any run is load. Neither this nor `stuck_max` applies to a counter.
   std::optional<std::chrono::seconds> zero_run_max;
   /// A run of equal non-zero values this long means a frozen meter. Absent: 12
   /// intervals; 0 s: never.

@@ -81,6 +81,7 @@ CounterState counter_of(const Json& json) {
   }
   for (const Json& t : json.at("restarts")) counter.restarts.push_back(instant_of(t));
   if (json.contains("falls")) counter.falls = falls_of(json.at("falls"));
+  if (json.contains("stands_since")) counter.stands_since = instant_of(json.at("stands_since"));
   return counter;
 }
 
@@ -170,7 +171,9 @@ class Writer {
     for (std::size_t i = 0; i < counter.restarts.size(); ++i) {
       raw(i > 0 ? "," : "").time(counter.restarts[i]);
     }
-    return raw("]}");
+    raw("]");
+    if (counter.stands_since) raw(",\"stands_since\":").time(*counter.stands_since);
+    return raw("}");
   }
   Writer& power(const metering::PowerBook& power) {
     raw("{\"covered_s\":").whole(power.covered.count());
@@ -202,7 +205,9 @@ std::string to_json(const RegisterState& state) {
   json.raw("]");
   if (state.power.next) json.raw(",\"power\":").power(state.power);
   json.raw(",\"rated_kW\":").number(state.settings.rated_kW);
-  json.raw(",\"resolution_kWh\":").number(state.settings.resolution_kWh).raw("}");
+  json.raw(",\"resolution_kWh\":").number(state.settings.resolution_kWh);
+  if (state.settings.runs_back) json.raw(",\"runs_back\":true");
+  json.raw("}");
   return std::move(json).text();
 }
 
@@ -217,6 +222,7 @@ Result<RegisterState> register_from_json(std::string_view text) {
     if (!json.at("next").is_null()) state.book.next = instant_of(json.at("next"));
     state.settings = {json.at("rated_kW").get<double>(), json.at("resolution_kWh").get<double>(),
                       number_or(json.at("modulus_kWh"), std::numeric_limits<double>::infinity())};
+    state.settings.runs_back = json.contains("runs_back");
     if (json.contains("power")) state.power = power_of(json.at("power"));
     return state;
   } catch (const std::exception& error) {

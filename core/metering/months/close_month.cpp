@@ -100,6 +100,16 @@ void count_slots(const MonthSlots& month, MonthlyFigure& figure) {
   for (const Reason reasons : month.reasons) figure.reasons |= reasons;
 }
 
+/// Whose values the source has estimated.
+double estimated_slots(const MonthSlots& month) {
+  int estimated = 0;
+  for (int slot = 0; slot < month.slots(); ++slot) {
+    const Reason reasons = month.reasons[static_cast<std::size_t>(slot)];
+    if (month.has_energy(slot) && has(reasons, Reason::estimated)) ++estimated;
+  }
+  return estimated;
+}
+
 double energy_kWh(const MonthSlots& month) {
   double sum_kW = 0.0;
   for (const double value_kW : month.used_kW) sum_kW += value_kW;
@@ -151,6 +161,7 @@ ClosedMonth close_month(std::uint32_t meter_index, MonthSlots received, const Me
   };
   figure.coverage = count(Validity::ok) / slots;
   figure.filled_share = (fill.filled + count(Validity::scaled)) / slots;
+  figure.estimated_share = estimated_slots(month) / slots;
   figure.daily_average_kWh = energy_kWh(month) / days;  // NaN if nothing was measured
   figure.daily_average_variance_kWh2 = fill.variance_kWh2 / (days * days);
   figure.unusable_because = why_unusable(month, figure, options);

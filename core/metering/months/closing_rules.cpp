@@ -9,7 +9,7 @@ namespace recald::metering {
 namespace {
 
 /// Increase this when the program itself closes months differently.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
 /// FNV-1a, 64 bit, used to distinguish rules, not to protect them. @see RFC draft eastlake-fnv.
 class Digest {

@@ -42,7 +42,7 @@ std::string plural(int count, std::string_view one, std::string_view many) {
 }
 
 /// The meaning of a set of reasons for the person responsible for the meter.
-std::string reason_words(const Episode& episode) {
+std::string reason_words(const Episode& episode, bool is_rated) {
   const Reason r = episode.reasons;
   if (!episode.suspect && r == Reason::none) return "without readings";
   std::string words;
@@ -55,7 +55,8 @@ std::string reason_words(const Episode& episode) {
       "exactly zero for longer than this meter's load can be, treated as no data");
   add(Reason::stuck, "frozen at one value");
   add(Reason::negative, "negative, which this meter cannot be");
-  add(Reason::range, "beyond what this meter can measure");
+  add(Reason::range, is_rated ? "beyond what this meter can measure"
+                              : "far above all others, and no rated_kW says that they can be");
   add(Reason::spike, "single values far above the rest of their day");
   add(Reason::nan, "listed as blank by the source");
   add(Reason::mismatch, "given twice with different values");
@@ -67,11 +68,12 @@ std::string reason_words(const Episode& episode) {
 }
 
 DataFinding describe_kind(std::string_view meter, const std::vector<Episode>& alike,
-                          const LocalCalendar& calendar) {
+                          const LocalCalendar& calendar, bool is_rated) {
   int slots = 0;
   for (const Episode& episode : alike) slots += episode.slots;
   const Episode& longest = *std::ranges::max_element(alike, {}, &Episode::slots);
-  std::string sentence = plural(slots, "interval ", "intervals ") + reason_words(alike.front());
+  std::string sentence =
+      plural(slots, "interval ", "intervals ") + reason_words(alike.front(), is_rated);
   sentence += alike.size() == 1
                   ? ", in one stretch of "
                   : ", in " + std::to_string(alike.size()) + " stretches, the longest of ";
@@ -212,7 +214,8 @@ std::vector<DataFinding> describe_data(std::string_view meter, const std::vector
                                        const std::vector<TimeSpan>& zero_runs,
                                        const std::vector<MonthlyFigure>& figures,
                                        const std::vector<LevelChange>& changes,
-                                       const MeterCounts& counts, const LocalCalendar& calendar) {
+                                       const MeterCounts& counts, const LocalCalendar& calendar,
+                                       bool is_rated) {
   std::vector<DataFinding> findings;
   describe_changes(meter, figures, changes, calendar, findings);
   describe_unusable(meter, figures, calendar, findings);
@@ -221,7 +224,9 @@ std::vector<DataFinding> describe_data(std::string_view meter, const std::vector
   for (const Episode& episode : episodes) {
     kinds[{!episode.suspect, static_cast<std::uint32_t>(episode.reasons)}].push_back(episode);
   }
-  for (const auto& [kind, alike] : kinds) findings.push_back(describe_kind(meter, alike, calendar));
+  for (const auto& [kind, alike] : kinds) {
+    findings.push_back(describe_kind(meter, alike, calendar, is_rated));
+  }
 
   for (const TimeSpan& run : zero_runs) {
     if (run.length() < kLongZeroRun) continue;

@@ -43,13 +43,12 @@ struct DataFinding {
 /// A run of zeros that the settings accept as load is also reported if it is longer than three
 /// days, because only the owner can know whether it means "no load" or "no data".
 /// @param zero_runs  Runs of exact zeros that passed as `ok`, see `find_believed_zero_runs`.
-[[nodiscard]] std::vector<DataFinding> describe_data(std::string_view meter,
-                                                     const std::vector<Episode>& episodes,
-                                                     const std::vector<TimeSpan>& zero_runs,
-                                                     const std::vector<MonthlyFigure>& figures,
-                                                     const std::vector<LevelChange>& changes,
-                                                     const MeterCounts& counts,
-                                                     const LocalCalendar& calendar);
+/// @param is_rated   Whether somebody says how much the meter can measure.
+[[nodiscard]] std::vector<DataFinding> describe_data(
+    std::string_view meter, const std::vector<Episode>& episodes,
+    const std::vector<TimeSpan>& zero_runs, const std::vector<MonthlyFigure>& figures,
+    const std::vector<LevelChange>& changes, const MeterCounts& counts,
+    const LocalCalendar& calendar, bool is_rated = true);
 
 /// Runs of exact zeros within the month that count as measured.
 [[nodiscard]] std::vector<TimeSpan> find_believed_zero_runs(const MonthSlots& month);

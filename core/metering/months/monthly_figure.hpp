@@ -26,6 +26,9 @@ struct MonthlyFigure {
   std::chrono::seconds peak_window;
   double coverage;      ///< Share of the month's slots that are measured and valid, 0…1.
   double filled_share;  ///< Share of the slots that are filled or scaled.
+  /// Of these, share of the slots whose values the source has estimated, as it says. Not kept in a
+  /// store: only of months of files.
+  double estimated_share = 0.0;
   std::array<int, 5> slots_by_validity;  ///< Indexed by `Validity`.
   int slots;                             ///< Slots of the local month, clock changes included.
   bool usable;                           ///< May be used for calibration.

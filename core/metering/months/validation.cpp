@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/absent.hpp"
@@ -18,6 +19,7 @@ constexpr std::size_t kSpikeDaysMin = 5;   // fewer days say nothing about a tim
 constexpr double kSameSize = 2.0;          // firings of one boiler differ by less
 constexpr int kFiringsConfirming = 2;      // that a load draws so much now and then
 constexpr double kFewSteps = 8.0;          // of a coarse register; a load rests below this
+constexpr double kSlipOfDay = 0.9;         // of a day's readings: above the limit all are slips
 
 void condemn(MonthSlots& month, std::size_t slot, Reason reason) {
   month.validity[slot] = Validity::suspect;
@@ -83,6 +85,89 @@ void check_range(MonthSlots& month, double lower_kW, double limit_kW, Reason bel
     if (month.measured_kW[i] > limit_kW) condemn(month, i, Reason::range);
     if (month.measured_kW[i] < lower_kW) condemn(month, i, below);
   }
+}
+
+/// Believes readings above a limit that nobody gave, if others show that the load draws so much.
+class LargeLoads {
+ public:
+  LargeLoads(const MonthSlots& month, const ValidationContext& context, double limit_kW)
+      : month_{month}, limit_kW_{limit_kW} {
+    for (const MonthSlots* one : {context.before, &month, context.after}) {
+      if (one != nullptr) gather(*one);
+    }
+  }
+
+  /// @pre the slot's reading lies above the limit
+  [[nodiscard]] bool believes(std::size_t slot) const {
+    const Large own = large_of(month_, slot, limit_kW_);
+    if (is_slip(own)) return false;
+    return std::any_of(large_.begin(), large_.end(), [&](const Large& other) {
+      const bool is_another_day = other.month != own.month || other.day != own.day;
+      const bool is_like = other.kW >= own.kW / kSameSize && other.kW <= own.kW * kSameSize;
+      const bool is_word = other.kW == own.kW && other.is_single && own.is_single;
+      return is_another_day && is_like && !is_word && !is_slip(other);
+    });
+  }
+
+ private:
+  struct Large {
+    const MonthSlots* month;
+    int day;
+    double kW;
+    bool is_single;  ///< Neither neighbour lies above the limit.
+  };
+
+  static Large large_of(const MonthSlots& month, std::size_t slot, double limit_kW) {
+    const auto is_above = [&](std::size_t i) {
+      return i < month.measured_kW.size() && month.measured_kW[i] > limit_kW;
+    };
+    const bool is_single = !is_above(slot + 1) && (slot == 0 || !is_above(slot - 1));
+    return {&month, month.grid->day(static_cast<int>(slot)), month.measured_kW[slot], is_single};
+  }
+
+  void gather(const MonthSlots& month) {
+    const std::vector<int>& begins = month.grid->day_begins();
+    for (std::size_t day = 0; day + 1 < begins.size(); ++day) {
+      int reported = 0;
+      int above = 0;
+      for (int slot = begins[day]; slot < begins[day + 1]; ++slot) {
+        const auto i = static_cast<std::size_t>(slot);
+        if (month.validity[i] != Validity::ok || month.measured_kW[i] == 0.0) continue;
+        ++reported;
+        if (!(month.measured_kW[i] > limit_kW_)) continue;
+        ++above;
+        large_.push_back(large_of(month, i, limit_kW_));
+      }
+      if (above > 0 && above > kSlipOfDay * reported)
+        slips_.emplace_back(&month, static_cast<int>(day));
+    }
+  }
+
+  [[nodiscard]] bool is_slip(const Large& one) const {
+    return std::find(slips_.begin(), slips_.end(), std::pair{one.month, one.day}) != slips_.end();
+  }
+
+  const MonthSlots& month_;
+  double limit_kW_;
+  std::vector<Large> large_;
+  std::vector<std::pair<const MonthSlots*, int>> slips_;
+};
+
+/// @return the largest reading that is believed above the limit; 0: none is.
+double check_unrated(MonthSlots& month, const ValidationContext& context, double limit_kW) {
+  const LargeLoads loads{month, context, limit_kW};
+  double largest_kW = 0.0;
+  std::vector<std::size_t> refused;
+  for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
+    if (month.validity[i] != Validity::ok || !(month.measured_kW[i] > limit_kW)) continue;
+    if (loads.believes(i)) {
+      largest_kW = std::max(largest_kW, month.measured_kW[i]);
+    } else {
+      refused.push_back(i);
+    }
+  }
+  for (const std::size_t slot : refused) condemn(month, slot, Reason::range);
+  return largest_kW;
 }
 
 bool is_negative(const MonthSlots& month, std::size_t slot) {
@@ -396,12 +481,18 @@ void validate(MonthSlots& month, const Meter& meter, const ValidationContext& co
   const Extremes extremes = extremes_of(month);
   const double limit_kW = range_limit_kW(month, extremes.magnitude_kW(), meter, context, options);
   const double lower_kW = both_ways ? -limit_kW : 0.0;
-  if (extremes.highest_kW > limit_kW || extremes.lowest_kW < lower_kW) {
-    check_range(month, lower_kW, limit_kW, both_ways ? Reason::range : Reason::negative);
+  double largest_kW = limit_kW;
+  if (!meter.rated_kW && extremes.highest_kW > limit_kW) {
+    largest_kW = std::max(limit_kW, check_unrated(month, context, limit_kW));
+  }
+  if (extremes.highest_kW > largest_kW || extremes.lowest_kW < lower_kW) {
+    check_range(month, lower_kW, largest_kW, both_ways ? Reason::range : Reason::negative);
   }
   if (!both_ways) check_corrections(month, context, options, extremes.lowest_kW < 0.0);
-  SpikeCheck{month, meter, context, options}.run(std::min(extremes.highest_kW, limit_kW));
-  RunCheck{month, meter, context, options}.run();
+  SpikeCheck{month, meter, context, options}.run(std::min(extremes.highest_kW, largest_kW));
+  // A register that stands still has counted nothing, and one that counts evenly has a steady load
+  // or coarse steps: it says so by counting, unlike a power that nobody measures any more.
+  if (!meter.is_counted) RunCheck{month, meter, context, options}.run();
 }
 
 }  // namespace recald::metering

@@ -42,7 +42,10 @@ struct ValidationContext {
 
 /// Turns `ok` slots into `suspect` if a check fails; other slots do not change.
 ///
-/// - range: above 1.2 × rated_kW; without a rating above both `unrated_` limits.
+/// - range: above 1.2 × rated_kW; without a rating above both `unrated_` limits, unless readings of
+///   about the size come on another day as well, as of a car that is charged. They do not count
+///   where nearly all of a day lies above the limit, which is a slip of units, nor single ones of
+///   exactly the same value, which are a device's word for none.
 /// - negative: below zero if the meter cannot run backwards.
 /// - range beside a negative: meters and operators correct a register by a large negative interval
 ///   and large positive ones around it. Within `correction_window` of a negative interval, a
@@ -55,7 +58,8 @@ struct ValidationContext {
 ///   around, at any time of day. One is enough if half of the month's readings are 0 or a few
 ///   register steps, as with a boiler's gas meter.
 /// - stuck and zero_run: runs of equal values that reach the meter's limit, across month ends;
-///   blanks inside neither break a run nor count in it.
+///   blanks inside neither break a run nor count in it. Never of a counter: at rest it has measured
+///   a zero.
 ///
 /// O(slots). No state: the same month and neighbours give the same verdict.
 /// @see CalTRACK 2.2.1.4 for zeros; Hyndman's and utilities' spike rule with 180 %.

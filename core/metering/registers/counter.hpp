@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -12,11 +13,25 @@
 
 namespace recald::metering {
 
+/// When a register sets itself to zero, by its local clock.
+enum class Resets : std::uint8_t { never, daily, monthly };
+
 struct CounterSettings {
   double rated_kW;                                               ///< The largest power of the load.
   double resolution_kWh = 0.0;                                   ///< r: step of the register.
   double modulus_kWh = std::numeric_limits<double>::infinity();  ///< M: where it wraps.
+  /// Of one unit that it shows: it may also wrap where its digits end. 0: its digits are unknown.
+  double digit_kWh = 0.0;
+  bool runs_back = false;  ///< It counts down what is delivered back.
+  Resets resets = Resets::never;
 };
+
+/// The last instant, at or before `t`, at which a register sets itself to zero. Empty: it never
+/// does.
+using ResetTimes = std::function<Instant(Instant t)>;
+
+/// Empty where `resets` is never.
+[[nodiscard]] ResetTimes reset_times(Resets resets, const LocalCalendar& calendar);
 
 /// A: the most by which the register can have risen in that time.
 [[nodiscard]] double rise_max_kWh(std::chrono::seconds span, const CounterSettings& settings);
@@ -34,6 +49,7 @@ enum class CounterEvent : std::uint8_t {
   reset,
   restored,
   jump,
+  caught_up,
   erratic,
   no_total,
   swapped
@@ -59,6 +75,7 @@ struct CounterState {
   std::optional<Pending> pending;       ///< P: samples that contradict B.
   std::vector<Instant> restarts;        ///< Times when P was restarted within the last hour.
   std::optional<FallRun> falls;         ///< Since the register began to go back again and again.
+  std::optional<Instant> stands_since;  ///< When the baseline's value was first read.
 };
 
 /// The energy that one sample decides.
@@ -83,6 +100,14 @@ struct CounterStep {
 /// roll-over. Anything else waits until three samples over two minutes agree with each other. Then
 /// a fall was a reset (the span up to it is missing, never guessed), and a rise a jump.
 ///
+/// A rise that is too large for the time since the last sample, but not for the time for which the
+/// register stood still before, up to 7 days, was counted meanwhile: only what was read stood
+/// still. It supersedes that rest, `scaled`.
+///
+/// A register that is due to be set to zero counts from there: its value is what was used since.
+/// What it counted between the last sample and the reset is unknown; over a short time the load is
+/// taken to go on, `scaled`, else it is missing.
+///
 /// If the register returns to the line before the last rebase, that line is valid again: what
 /// was booked since is superseded by the difference, `scaled`. A register that has stood still
 /// since then may return after any time. One that counts may return within 7 days, and only
@@ -92,8 +117,11 @@ struct CounterStep {
 /// A register that goes back again and again without getting on is no total (`watch_falls`): what
 /// was booked since its first fall is superseded, `suspect`, and what follows is missing until it
 /// gets on.
+///
+/// @param zeroed  When it was last due to be set to zero, at or before the sample; absent: never.
 [[nodiscard]] CounterStep advance(CounterState state, const RegisterSample& sample,
-                                  const CounterSettings& settings);
+                                  const CounterSettings& settings,
+                                  std::optional<Instant> zeroed = {});
 
 /// The device was replaced (new serial number): the next sample is a new baseline.
 [[nodiscard]] CounterStep swap_meter(CounterState state);

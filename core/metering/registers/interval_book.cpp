@@ -13,6 +13,7 @@ namespace {
 using std::chrono::seconds;
 
 constexpr std::ptrdiff_t kDaysAround = 14;
+constexpr std::size_t kNotesMax = 100;
 
 std::vector<double> lengths_h(std::span<const CounterBooking> pieces) {
   std::vector<double> lengths;
@@ -93,10 +94,12 @@ void withdraw(IntervalBook& book, const CounterBooking& booking, seconds interva
 
 /// Forgets completed intervals, except the start of one that may still be withdrawn.
 void forget(IntervalBook& book, const CounterState& counter, seconds interval) {
+  const auto is_before = [&](const CounterBooking& piece, Instant t) {
+    return piece.span.begin >= interval_start(t, interval) && piece.span.end <= t;
+  };
   const auto may_return = [&](const CounterBooking& piece) {
-    if (!counter.previous) return false;
-    const Instant given_up = counter.previous->sample.time;
-    return piece.span.begin >= interval_start(given_up, interval) && piece.span.end <= given_up;
+    if (counter.previous && is_before(piece, counter.previous->sample.time)) return true;
+    return counter.stands_since && is_before(piece, *counter.stands_since);
   };
   std::erase_if(book.pieces, [&](const CounterBooking& piece) {
     return piece.span.end <= *book.next && !may_return(piece);
@@ -132,15 +135,32 @@ LoadShape like_days_around(std::span<const Reading> record, seconds interval) {
   };
 }
 
-std::vector<Reading> booked_readings(std::uint32_t meter, std::span<const RegisterSample> samples,
-                                     const BookingRules& rules, const CounterSettings& settings,
-                                     const LoadShape& shape) {
+/// A recorded register, and how it is read.
+struct Recorded {
+  std::span<const RegisterSample> samples;
+  BookingRules rules;
+  const CounterSettings& settings;
+  const ResetTimes& resets;
+};
+
+void note_event(const CounterStep& step, const CounterState& before, const RegisterSample& sample,
+                std::vector<RegisterNote>& notes) {
+  if (step.event == CounterEvent::none || notes.size() == kNotesMax) return;
+  notes.push_back({step.event, before.baseline, before.pending ? before.pending->first : sample});
+}
+
+std::vector<Reading> booked_readings(std::uint32_t meter, const Recorded& recorded,
+                                     const LoadShape& shape, std::vector<RegisterNote>* notes) {
   std::vector<Reading> readings;
   CounterStep step;
   IntervalBook book;
-  for (const RegisterSample& sample : samples) {
-    step = advance(std::move(step.state), sample, settings);
-    for (const BookedInterval& booked : book_intervals(book, meter, step, rules, shape)) {
+  for (const RegisterSample& sample : recorded.samples) {
+    const CounterState before = notes != nullptr ? step.state : CounterState{};
+    const auto zeroed =
+        recorded.resets ? std::optional{recorded.resets(sample.time)} : std::nullopt;
+    step = advance(std::move(step.state), sample, recorded.settings, zeroed);
+    if (notes != nullptr) note_event(step, before, sample, *notes);
+    for (const BookedInterval& booked : book_intervals(book, meter, step, recorded.rules, shape)) {
       while (booked.supersedes && !readings.empty() &&
              readings.back().start >= booked.reading.start) {
         readings.pop_back();
@@ -183,14 +203,18 @@ std::vector<BookedInterval> book_intervals(IntervalBook& book, std::uint32_t met
 
 std::vector<Reading> readings_from_register(std::uint32_t meter,
                                             std::span<const RegisterSample> samples,
-                                            seconds interval, const CounterSettings& settings) {
-  const BookingRules rules{.interval = interval, .sample_gap_max = interval};
-  std::vector<Reading> evenly = booked_readings(meter, samples, rules, settings, {});
+                                            seconds interval, const CounterSettings& settings,
+                                            const ResetTimes& resets,
+                                            std::vector<RegisterNote>* notes) {
+  // Stamps that are set when something was read are late by now and then.
+  const BookingRules rules{.interval = interval, .sample_gap_max = interval + interval / 4};
+  const Recorded recorded{samples, rules, settings, resets};
+  std::vector<Reading> evenly = booked_readings(meter, recorded, {}, notes);
   const bool any_hole = std::any_of(evenly.begin(), evenly.end(), [](const Reading& reading) {
     return reading.validity == Validity::scaled;
   });
   if (!any_hole) return evenly;
-  return booked_readings(meter, samples, rules, settings, like_days_around(evenly, interval));
+  return booked_readings(meter, recorded, like_days_around(evenly, interval), nullptr);
 }
 
 }  // namespace recald::metering

@@ -53,13 +53,22 @@ struct IntervalBook {
                                                          const BookingRules& rules,
                                                          const LoadShape& shape = {});
 
+/// What a recorded register did besides counting.
+struct RegisterNote {
+  CounterEvent event;
+  RegisterSample before;  ///< The last sample on its old line.
+  RegisterSample after;   ///< The first one on the new line.
+};
+
 /// Readings from a recorded register, one for each interval that starts within [first, last)
 /// sample. If samples are further apart than an interval, the rise between them is distributed like
 /// the load at the same time on the fourteen days before and after.
 /// @param samples  In time order, off-grid times allowed. @pre interval divides a day.
-[[nodiscard]] std::vector<Reading> readings_from_register(std::uint32_t meter,
-                                                          std::span<const RegisterSample> samples,
-                                                          std::chrono::seconds interval,
-                                                          const CounterSettings& settings);
+/// @param resets   Of the register's `settings.resets`.
+/// @param notes    Receives resets, jumps and the like, if not null; of many the first hundred.
+[[nodiscard]] std::vector<Reading> readings_from_register(
+    std::uint32_t meter, std::span<const RegisterSample> samples, std::chrono::seconds interval,
+    const CounterSettings& settings, const ResetTimes& resets = {},
+    std::vector<RegisterNote>* notes = nullptr);
 
 }  // namespace recald::metering

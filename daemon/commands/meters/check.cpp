@@ -36,15 +36,16 @@ void print_meters(const SiteConfig& site, const Console& console) {
                                  duration_words(config.live->poll));
       continue;
     }
-    if (config.mqtt) {
+    if (config.source == MeterSource::mqtt) {
       const auto& first = config.mqtt->energy ? config.mqtt->energy : config.mqtt->power;
       console.out << fmt::format("  meter {:<16} {:<14} messages of topic '{}'\n", meter.id,
                                  metering::to_string(meter.utility), first->topic);
       continue;
     }
     if (config.source == MeterSource::http) {
-      console.out << fmt::format("  meter {:<16} {:<14} pushed, interval {}\n", meter.id,
+      console.out << fmt::format("  meter {:<16} {:<14} pushed, {}interval {}\n", meter.id,
                                  metering::to_string(meter.utility),
+                                 config.counter ? "a counter, " : "",
                                  duration_words(meter.interval));
       continue;
     }

@@ -14,7 +14,8 @@ struct TriedMeter {
   MeterTrial trial;
 };
 
-/// Reads each live meter once, bus by bus; `tell` hears of each as soon as it is done.
+/// Reads each live meter bus by bus, and its counters a few seconds later again, for what a single
+/// read cannot show; `tell` hears of each as soon as it is done.
 /// @param site  Outlives the result.
 [[nodiscard]] std::vector<TriedMeter> try_meters(
     const SiteConfig& site, const std::function<void(const TriedMeter&)>& tell);

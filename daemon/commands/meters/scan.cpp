@@ -137,8 +137,16 @@ int run_scan(const ScanArguments& arguments, const Console& console) {
   }
   if (scan.ended_by) return console.fail(*scan.ended_by);
   if (scan.found.empty()) {
-    return console.fail(fmt::format("no unit from {} to {} answers at {}", units->first,
-                                    units->last, modbus::to_string(bus->endpoint)));
+    const auto* const tcp = std::get_if<modbus::TcpEndpoint>(&bus->endpoint);
+    const bool may_be_rtu = tcp != nullptr && !tcp->has_rtu_frames;
+    return console.fail(fmt::format(
+        "no unit from {} to {} answers at {}{}", units->first, units->last,
+        modbus::to_string(bus->endpoint),
+        may_be_rtu
+            ? fmt::format(", which accepts the connection, as a serial server does that passes "
+                          "RTU frames on; if it is one, set framing = \"rtu\" in [bus.{}]",
+                          bus->name)
+            : ""));
   }
   return kSuccess;
 }

@@ -68,6 +68,7 @@ class Attempt {
   }
 
   void fail_with(const modbus::ReadFailure& failure) {
+    trial_.is_silent = failure.fault == ReadFault::timeout;
     trial_.failures.push_back(failure.fault == ReadFault::timeout
                                   ? "does not answer"
                                   : fmt::format("cannot be read: {}", failure.what));
@@ -112,10 +113,19 @@ class Attempt {
     return true;
   }
 
-  void add(FieldWords found, milliseconds duration) {
+  [[nodiscard]] bool is_among_metered(const RegisterField& field) const {
     const auto metered = metered_fields(live_.map);
-    const bool is_metered =
-        std::ranges::find(metered, found.field->name, &RegisterField::name) != metered.end();
+    return std::ranges::find(metered, field.name, &RegisterField::name) != metered.end();
+  }
+
+  /// A value that cannot be is a failure where the meter is made of it.
+  void doubt(const RegisterField& field, const std::string& sentence) {
+    if (sentence.empty()) return;
+    (is_among_metered(field) ? trial_.failures : trial_.warnings).push_back(sentence);
+  }
+
+  void add(FieldWords found, milliseconds duration) {
+    const bool is_metered = is_among_metered(*found.field);
     if (is_metered && found.words.empty()) {
       trial_.failures.push_back(fmt::format("'{}' is {}", found.field->name, found.value.error()));
     }
@@ -132,14 +142,13 @@ class Attempt {
       if (meter_.role == MeterRole::weather && value->value) {
         const auto* const quantity = weather::find_quantity(found.field->name);
         if (quantity != nullptr && !weather::is_plausible(*quantity, value->value->value)) {
-          trial_.warnings.push_back(weather::why_not_plausible(*quantity, value->value->value) +
-                                    "; check address, type, scale and order in the map");
+          doubt(*found.field, weather::why_not_plausible(*quantity, value->value->value) +
+                                  "; check address, type, scale and order in the map");
         }
       }
       if (meter_.meter.rated_kW) {
-        const std::string doubt =
-            doubt_about(*found.field, {read.address, words}, value->power_of_ten, limits());
-        if (!doubt.empty()) trial_.warnings.push_back(doubt);
+        doubt(*found.field,
+              doubt_about(*found.field, {read.address, words}, value->power_of_ten, limits()));
       }
       add(std::move(found), duration);
     }
@@ -184,6 +193,39 @@ class Attempt {
 
 MeterTrial try_meter(const MeterConfig& meter, const AskOnce& ask) {
   return Attempt{meter, ask}.run();
+}
+
+std::vector<std::string> impossible_rises(const MeterConfig& meter, const MeterTrial& first,
+                                          const MeterTrial& second, milliseconds between) {
+  std::vector<std::string> sentences;
+  if (!meter.meter.rated_kW) return sentences;
+  for (const std::string& name : meter.live->map.energy) {
+    const auto found_in = [&](const MeterTrial& trial) {
+      return std::ranges::find_if(trial.fields, [&](const FieldTrial& one) {
+        return one.found.field->name == name && one.found.value;
+      });
+    };
+    const auto before = found_in(first);
+    const auto after = found_in(second);
+    if (before == first.fields.end() || after == second.fields.end()) continue;
+    const auto unit =
+        metering::find_unit(after->found.field->unit, metering::Utility::electricity, {});
+    if (!unit) continue;
+    const double factor = unit->factor * meter.multiplier;
+    const double rise_kWh = (after->found.value->value - before->found.value->value) * factor;
+    const auto span = std::chrono::ceil<std::chrono::seconds>(between);
+    const metering::CounterSettings settings{
+        .rated_kW = *meter.meter.rated_kW,
+        .resolution_kWh = after->found.value->resolution * factor};
+    if (rise_kWh <= rise_max_kWh(span, settings)) continue;
+    const double seconds = static_cast<double>(between.count()) / 1000.0;
+    sentences.push_back(fmt::format(
+        "'{}' rose by {:.4g} kWh in {:.1f} s, which is {:.4g} kW and impossible for a load of "
+        "{:.4g} kW; it may count Wh where the map says kWh: compare scale and unit in the map with "
+        "the meter's display",
+        name, rise_kWh, seconds, rise_kWh * 3600.0 / seconds, *meter.meter.rated_kW));
+  }
+  return sentences;
 }
 
 }  // namespace recald::daemon

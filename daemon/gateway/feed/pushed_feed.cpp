@@ -27,6 +27,7 @@ void PushedFeed::go_on_from(std::span<const std::unique_ptr<PushedFeed>> before)
       const MeterProgress* const known = one->find(own.stored.meter.id);
       if (known == nullptr) continue;
       own.counters = known->counters;
+      rising_ = one->rising_;
       heard_[i] = one->heard_[static_cast<std::size_t>(known - one->progress().data())];
     }
   }
@@ -36,6 +37,13 @@ MeterProgress* PushedFeed::find(std::string_view stored_id) {
   const auto found = std::ranges::find_if(
       progress(), [&](const MeterProgress& one) { return one.stored.meter.id == stored_id; });
   return found == progress().end() ? nullptr : &*found;
+}
+
+RisingWatch::Doubt PushedFeed::doubt_rising(const MeterProgress& of,
+                                            std::vector<metering::Reading>& readings) {
+  const metering::Meter& meter = of.stored.meter;
+  if (is_sensor() || meter.rated_kW) return {};
+  return rising_.look(readings, meter.interval);
 }
 
 void PushedFeed::note_heard(const MeterProgress& of, metering::Instant at, bool has_new) {

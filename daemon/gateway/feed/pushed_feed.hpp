@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/gateway/feed/meter_feed.hpp"
+#include "daemon/gateway/ingest/rising_watch.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {
@@ -24,6 +25,11 @@ class PushedFeed final : public MeterFeed {
 
   /// What is stored under this id: the meter, or one quantity of the sensor; null: nothing.
   [[nodiscard]] MeterProgress* find(std::string_view stored_id);
+
+  /// Marks readings as suspect that look like those of a register, where nothing says how much the
+  /// meter can measure.
+  [[nodiscard]] RisingWatch::Doubt doubt_rising(const MeterProgress& of,
+                                                std::vector<metering::Reading>& readings);
 
   /// @param has_new  Something in what was sent was not stored yet.
   void note_heard(const MeterProgress& of, metering::Instant at, bool has_new);
@@ -44,6 +50,7 @@ class PushedFeed final : public MeterFeed {
       : MeterFeed(std::move(id), std::move(progress)), heard_(this->progress().size()) {}
 
   std::vector<Heard> heard_;  ///< By progress.
+  RisingWatch rising_;
 };
 
 }  // namespace recald::daemon

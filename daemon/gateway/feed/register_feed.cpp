@@ -21,7 +21,9 @@ Result<std::string> lost_state(IntervalStore& store, std::uint32_t meter,
 
 Result<std::vector<modbus::PlannedRead>> planned_reads(const MeterConfig& config,
                                                        const modbus::RegisterMap& map) {
-  auto reads = plan_reads(metered_fields(map), map.function, map.limits);
+  const std::vector<modbus::RegisterField> fields = metered_fields(map);
+  auto reads = plan_reads(fields, map.function, map.limits);
+  if (reads) add_single_reads(*reads, fields);
   if (reads) return reads;
   return failure(reads.error().code,
                  fmt::format("meter '{}': {}", config.meter.id, reads.error().message));
@@ -55,7 +57,8 @@ Result<OpenedRegisters> open_meter_registers(const MeterConfig& config, const Li
       .map = live.map,
       .multiplier = config.multiplier,
       .counter = config.counter.value_or(
-          metering::CounterSettings{.rated_kW = config.meter.rated_kW.value_or(0.0)}),
+          metering::CounterSettings{.rated_kW = config.meter.rated_kW.value_or(0.0),
+                                    .runs_back = config.meter.negative_is_valid}),
       .booking = {.interval = config.meter.interval, .sample_gap_max = 2 * live.poll}};
   // A map that lost its counter leaves the counter's state behind in the store.
   const std::string field = live.map.energy.empty() ? "power" : "energy";

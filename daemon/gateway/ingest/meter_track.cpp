@@ -42,6 +42,7 @@ Severity severity_of(CounterEvent event) {
     case CounterEvent::none:
     case CounterEvent::bounce:
     case CounterEvent::restored:
+    case CounterEvent::caught_up:
       return Severity::info;
     case CounterEvent::reset:
     case CounterEvent::jump:
@@ -70,6 +71,8 @@ std::string_view kind_of(CounterEvent event) {
       return "counter_restored";
     case CounterEvent::jump:
       return "counter_jump";
+    case CounterEvent::caught_up:
+      return "counter_caught_up";
     case CounterEvent::erratic:
       return "counter_erratic";
     case CounterEvent::no_total:
@@ -82,10 +85,11 @@ std::string_view kind_of(CounterEvent event) {
 
 }  // namespace
 
-MeterTrack::MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
+MeterTrack::MeterTrack(TrackedMeter meter, const metering::LocalCalendar& calendar,
                        const std::optional<RegisterState>& restored)
     : meter_(std::move(meter)),
-      usual_(std::move(calendar), meter_.booking.interval),
+      resets_(reset_times(meter_.counter.resets, calendar)),
+      usual_(calendar, meter_.booking.interval),
       refusals_(meter_.id),
       absent_(meter_.id, meter_.booking.sample_gap_max) {
   meter_.map.fields = metered_fields(meter_.map);  // the others are never read
@@ -221,6 +225,7 @@ void MeterTrack::take_identity(StoreBatch& batch, PollTime poll, Instant at) {
   other_identity_.reset();
   state_.counter = metering::swap_meter(std::move(state_.counter)).state;
 }
+
 void MeterTrack::take_energy(StoreBatch& batch, PollTime poll, Instant at) {
   double energy_kWh = 0.0;
   double resolution_kWh = 0.0;
@@ -231,9 +236,12 @@ void MeterTrack::take_energy(StoreBatch& batch, PollTime poll, Instant at) {
     const double factor = unit_factor(*field) * meter_.multiplier;
     energy_kWh += found->second.value * factor;
     resolution_kWh += found->second.resolution * factor;
-    if (field->modulus && meter_.map.energy.size() == 1) {
-      state_.settings.modulus_kWh = std::min(meter_.counter.modulus_kWh,
-                                             *field->modulus * found->second.power_of_ten * factor);
+    if (meter_.map.energy.size() > 1) continue;  // each wraps on its own
+    const auto modulus = field->modulus ? field->modulus : modbus::wraps_at(field->format);
+    state_.settings.digit_kWh = factor;
+    if (modulus) {
+      state_.settings.modulus_kWh =
+          std::min(meter_.counter.modulus_kWh, *modulus * found->second.power_of_ten * factor);
     }
   }
   state_.settings.resolution_kWh = std::max(meter_.counter.resolution_kWh, resolution_kWh);
@@ -307,8 +315,9 @@ void MeterTrack::take_sample(StoreBatch& batch, const RegisterSample& sample) {
   if (std::exchange(clock_was_set_, false)) begin_anew(sample.time);
 
   const metering::CounterState before = state_.counter;
+  const auto zeroed = resets_ ? std::optional{resets_(sample.time)} : std::nullopt;
   metering::CounterStep step =
-      metering::advance(std::move(state_.counter), sample, state_.settings);
+      metering::advance(std::move(state_.counter), sample, state_.settings, zeroed);
   for (metering::CounterBooking& booking : step.bookings) {
     const bool is_hole = booking.span.length() > meter_.booking.sample_gap_max;
     if (is_hole || booking.validity != metering::Validity::ok) booking.reasons |= since_sample_;
@@ -353,6 +362,11 @@ StoreEvent MeterTrack::event_of(CounterEvent event, const RegisterSample& sample
             "the register rose from {:.1f} to {:.1f} kWh, more than a load of {:.0f} kW can use, "
             "and stays there; the rise was not counted",
             from_kWh, before.pending->first.value_kWh, state_.settings.rated_kW);
+      case CounterEvent::caught_up:
+        return fmt::format(
+            "the register was read as {:.1f} kWh since {} and then rose at once to {:.1f}: it had "
+            "counted meanwhile, so the rise was distributed over that time",
+            from_kWh, metering::to_string(*before.stands_since), before.pending->first.value_kWh);
       case CounterEvent::restored:
         return fmt::format(
             "the register is back at its earlier count, {:.1f} kWh; what was counted in between "

@@ -42,7 +42,7 @@ struct LiveValues {
 class MeterTrack {
  public:
   /// @param restored  The stored state; nothing for a new meter.
-  MeterTrack(TrackedMeter meter, metering::LocalCalendar calendar,
+  MeterTrack(TrackedMeter meter, const metering::LocalCalendar& calendar,
              const std::optional<RegisterState>& restored);
 
   /// Adds a stored interval to the usual day, as after a restart.
@@ -99,6 +99,7 @@ class MeterTrack {
   [[nodiscard]] bool is_worth_keeping(const metering::RegisterSample& sample) const;
 
   TrackedMeter meter_;  ///< Its map has only the fields that are read.
+  metering::ResetTimes resets_;
   metering::UsualDay usual_;
   RegisterState state_;
   LiveValues live_;

@@ -54,11 +54,27 @@ std::string sentence_of(const std::string& meter, const RefusedRegisters& refuse
 
 std::optional<StoreEvent> RefusalWatch::take(const modbus::PlannedRead& read,
                                              const modbus::ReadResult& result, Instant at) {
-  Read& known = reads_[read.address];
+  Read& known = reads_[{read.address, read.count}];
   if (result) return answer(known, at);
   const modbus::ReadFailure& failure = result.error();
   if (failure.fault != modbus::ReadFault::exception) return {};
+  if (read.may_split && modbus::is_illegal_span(failure)) return told_of_split(read, failure, at);
   return refuse(known, {read.address, read.count, failure.exception_code, at}, at);
+}
+
+StoreEvent RefusalWatch::told_of_split(const modbus::PlannedRead& read,
+                                       const modbus::ReadFailure& failure, Instant at) const {
+  return {.time = at,
+          .severity = Severity::info,
+          .kind = "read_split",
+          .subject = meter_,
+          .text = fmt::format(
+              "meter '{}' refuses to read registers {} to {} at once, with exception {}: they span "
+              "some that it may not have, so its fields are read one by one from now on; gap_max = "
+              "0 in its register map does so from the start",
+              meter_, read.address, read.address + read.count - 1,
+              modbus::describe_exception(failure.exception_code)),
+          .is_counted = true};
 }
 
 std::optional<StoreEvent> RefusalWatch::refuse(Read& read, RefusedRegisters refused,

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adapters/modbus/register_map.hpp"
@@ -33,6 +34,9 @@ class RefusalWatch {
  public:
   explicit RefusalWatch(std::string meter) : meter_(std::move(meter)) {}
 
+  /// A read that others can be made instead of is none that someone should look at: its refusal is
+  /// one event, which says what to write into the map.
+  ///
   /// Takes the outcome of one read. "Busy" answers, and a gateway's exceptions for a silent device,
   /// may be temporary: they become an event after five minutes without any other answer, once, and
   /// are counted after that.
@@ -52,12 +56,15 @@ class RefusalWatch {
     metering::Instant reported = metering::Instant::min();
   };
 
+  [[nodiscard]] StoreEvent told_of_split(const modbus::PlannedRead& read,
+                                         const modbus::ReadFailure& failure,
+                                         metering::Instant at) const;
   [[nodiscard]] std::optional<StoreEvent> refuse(Read& read, RefusedRegisters refused,
                                                  metering::Instant at) const;
   [[nodiscard]] std::optional<StoreEvent> answer(Read& read, metering::Instant at) const;
 
   std::string meter_;
-  std::map<std::uint16_t, Read> reads_;  ///< By address.
+  std::map<std::pair<std::uint16_t, std::uint16_t>, Read> reads_;  ///< By address and count.
 };
 
 }  // namespace recald::daemon

@@ -68,10 +68,33 @@ void BusPoller::begin_due_polls(const Moment& now) {
     }
     if (is_waiting) continue;
     for (std::size_t read = units_[i].reads.size(); read-- > 0;) {
-      if (polling.refusals[read].until <= now.monotonic) polling.to_read.push_back(read);
+      const bool may_ask = polling.refusals[read].until <= now.monotonic;
+      if (may_ask && is_made(i, read)) polling.to_read.push_back(read);
     }
     if (polling.to_read.empty()) end_poll(i);
   }
+}
+
+/// Of a read and those that are made instead, only one kind is.
+bool BusPoller::is_made(std::size_t unit, std::size_t read) const {
+  const std::vector<Refusal>& refusals = states_[unit].refusals;
+  const auto instead_of = units_[unit].reads[read].instead_of;
+  return instead_of ? refusals[*instead_of].is_split : !refusals[read].is_split;
+}
+
+/// A device may lack registers between those of two fields.
+bool BusPoller::split(const BusOrder& order, const modbus::ReadFailure& failure) {
+  const std::vector<modbus::PlannedRead>& reads = units_[order.unit].reads;
+  UnitPolling& polling = states_[order.unit];
+  if (!reads[order.read].may_split || !modbus::is_illegal_span(failure)) return false;
+  std::vector<std::size_t> instead;
+  for (std::size_t i = reads.size(); i-- > 0;) {
+    if (reads[i].instead_of == order.read) instead.push_back(i);
+  }
+  polling.refusals[order.read] = {.is_split = true};
+  polling.to_read.pop_back();
+  polling.to_read.insert(polling.to_read.end(), instead.begin(), instead.end());
+  return true;
 }
 
 bool BusPoller::is_reliable(const UnitPolling& polling) const {
@@ -202,6 +225,7 @@ void BusPoller::take_exception(const BusOrder& order, const modbus::ReadFailure&
     polling.not_before = now.monotonic + rules_.busy_wait;
     return;
   }
+  if (split(order, failure)) return;
   Refusal& refusal = polling.refusals[order.read];
   refusal.is_busy = modbus::is_busy(failure.exception_code);
   if (modbus::is_refusal(failure)) {

@@ -23,7 +23,8 @@ namespace recald::daemon {
 struct PolledUnit {
   std::string meter;  ///< Its id.
   std::uint8_t unit = 1;
-  std::vector<modbus::PlannedRead> reads;  ///< Each poll makes all of them. @pre not empty
+  /// Each poll makes all of them, but for those in the place of another. @pre not empty
+  std::vector<modbus::PlannedRead> reads;
   std::chrono::milliseconds period{60'000};
   std::chrono::seconds interval{900};    ///< Each of its boundaries is polled as well.
   double phase = 0.0;                    ///< As in PollTimes.
@@ -79,6 +80,7 @@ class BusPoller {
   ///   10 and 11 do not.
   /// - Busy (5, 6): the same read is repeated up to three times, 100 ms apart. A unit that is still
   ///   busy has not served that poll, and is degraded.
+  /// - A refusal of a read that others can be made instead of: they are, from this poll on.
   /// - Any other exception is a refusal of that read: it is left out of the polls for 10 s, then
   ///   for twice as long, up to 5 minutes. A gateway that has just started returns "illegal
   ///   address" for registers that it has a moment later.
@@ -102,7 +104,8 @@ class BusPoller {
   struct Refusal {
     std::chrono::milliseconds wait{0};  ///< Zero: not refused.
     std::chrono::milliseconds until{0};
-    bool is_busy = false;  ///< The last poll found the unit busy throughout.
+    bool is_busy = false;   ///< The last poll found the unit busy throughout.
+    bool is_split = false;  ///< Others are made instead.
   };
   struct UnitPolling {
     PollTimes times;
@@ -130,6 +133,8 @@ class BusPoller {
   [[nodiscard]] BusOrder order_for(std::size_t unit, bool is_probe, const Moment& now);
   [[nodiscard]] std::optional<BusOrder> probe(const Moment& now);
   void end_poll(std::size_t unit);
+  [[nodiscard]] bool is_made(std::size_t unit, std::size_t read) const;
+  bool split(const BusOrder& order, const modbus::ReadFailure& failure);
   void take_exception(const BusOrder& order, const modbus::ReadFailure& failure, const Moment& now);
   void take_silence(const BusOrder& order, const Moment& now);
   void rest(const Moment& now);

@@ -95,7 +95,7 @@ Result<std::vector<std::unique_ptr<LiveBus>>> Gateway::open_buses(
 Result<std::vector<std::unique_ptr<MqttFeed>>> Gateway::open_mqtt(const SiteConfig& site) {
   std::vector<std::unique_ptr<MqttFeed>> opened;
   for (const MeterConfig& config : site.meters) {
-    if (config.source != MeterSource::mqtt) continue;
+    if (!config.mqtt) continue;
     opened.push_back(TRY(MqttFeed::open(config, calendar_, ports_.store)));
   }
   return opened;
@@ -105,7 +105,7 @@ Result<std::vector<std::unique_ptr<PushedFeed>>> Gateway::open_pushed(const Site
   std::vector<std::unique_ptr<PushedFeed>> opened;
   for (const auto* const list : {&site.meters, &site.sensors}) {
     for (const MeterConfig& config : *list) {
-      if (config.source != MeterSource::http) continue;
+      if (config.source != MeterSource::http || config.mqtt) continue;
       opened.push_back(TRY(PushedFeed::open(config, calendar_, ports_.store)));
       opened.back()->go_on_from(pushed_);
     }
@@ -478,10 +478,16 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
   watch_clock(at);
   if (ports_.recorder != nullptr) tell(at, recording::Push{meter, readings, correction});
   const MeterProgress& progress = *(*feed)->find(meter);
+  RisingWatch::Doubt doubt;
+  if (!correction) doubt = (*feed)->doubt_rising(progress, readings);
   StoreBatch batch;
   for (metering::Reading& reading : readings) {
     reading.meter = progress.stored.number;
     batch.intervals.push_back({.reading = reading, .supersedes = correction.has_value()});
+  }
+  for (metering::Reading& before : doubt.before) {
+    before.meter = progress.stored.number;
+    batch.intervals.push_back({.reading = before, .supersedes = true});
   }
   progress.mark_late(batch, calendar_);
   const Instant now = at.instant();
@@ -494,6 +500,28 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
   (*feed)->note_heard(progress, now, counts->taken > 0);
   note_committed(batch, *counts);
   report_pushed(meter, *counts, correction, now);
+  if (!doubt.words.empty()) {
+    note({.time = now,
+          .severity = Severity::warning,
+          .kind = "readings_rise",
+          .subject = meter,
+          .text = fmt::format("meter '{}': {}", meter, doubt.words),
+          .is_counted = true});
+    counts->doubt = std::move(doubt.words);
+  }
+  return counts;
+}
+
+Result<CommitCounts> Gateway::take_samples(const std::string& meter,
+                                           std::vector<metering::RegisterSample> samples) {
+  std::ranges::stable_sort(samples, {}, &metering::RegisterSample::time);
+  CommitCounts counts;
+  for (const metering::RegisterSample& sample : samples) {
+    const bool is_new = TRY(accept_mqtt(
+        {.meter = meter, .is_counter = true, .value = sample.value_kWh, .measured = sample.time}));
+    ++(is_new ? counts.taken : counts.duplicates);
+  }
+  TRY(committer_.flush());
   return counts;
 }
 

@@ -98,6 +98,14 @@ class Gateway {
                                                  std::vector<metering::Reading> readings,
                                                  const std::optional<Correction>& correction = {});
 
+  /// Takes samples of a counter that are pushed, of a meter with source = "http" and a counter.
+  /// They, and what they make of its intervals, are on disk when this returns.
+  /// @return how many were taken, and as duplicates how many are not later than the last; or
+  ///         not_found for a meter without such a counter, or the store's failure: then nothing is
+  ///         acknowledged, and sending them again does no harm.
+  [[nodiscard]] Result<CommitCounts> take_samples(const std::string& meter,
+                                                  std::vector<metering::RegisterSample> samples);
+
   /// Takes a value of a meter with source = "mqtt". One that is not later than the last is left
   /// out: a broker may deliver twice, and out of order.
   /// @return whether it was taken; not_found for a meter that lacks such a value.

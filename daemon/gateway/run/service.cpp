@@ -329,6 +329,10 @@ class Service {
                   .take_readings =
                       [this](const std::string& meter, auto readings, const auto& correction) {
                         return gateway_->take_pushed(meter, std::move(readings), correction);
+                      },
+                  .take_samples =
+                      [this](const std::string& meter, auto samples) {
+                        return gateway_->take_samples(meter, std::move(samples));
                       }};
   }
 

@@ -19,6 +19,7 @@ modbus::TcpEndpoint read_tcp(TomlReader& table) {
   modbus::TcpEndpoint tcp;
   tcp.host = table.required_text("host");
   tcp.port = static_cast<std::uint16_t>(table.whole_number_or("port", tcp.port, kPorts));
+  tcp.has_rtu_frames = table.word("framing", {"tcp", "rtu"}) == "rtu";
   tcp.connect_delay = table.milliseconds("connect_delay").value_or(tcp.connect_delay);
   tcp.connect_timeout = table.milliseconds("connect_timeout").value_or(tcp.connect_timeout);
   return tcp;

@@ -139,6 +139,7 @@ std::optional<metering::CounterSettings> read_counter(TomlReader table,
       table.number_or("modulus", std::numeric_limits<double>::infinity(), kPositive);
   const double resolution = table.number_or("resolution", 0.0, kNotNegative);
   const std::string unit = table.text_or("unit", "kWh");
+  const auto resets = table.word("resets", {"day", "month"});
   const auto conversion = metering::find_unit(unit, metering::Utility::electricity, {});
   if (!conversion || conversion->is_rate) {
     table.problem_at(
@@ -149,7 +150,10 @@ std::optional<metering::CounterSettings> read_counter(TomlReader table,
   table.finish();
   return metering::CounterSettings{.rated_kW = rated_kW.value_or(0.0),
                                    .resolution_kWh = resolution * conversion->factor,
-                                   .modulus_kWh = modulus * conversion->factor};
+                                   .modulus_kWh = modulus * conversion->factor,
+                                   .resets = resets == "day"     ? metering::Resets::daily
+                                             : resets == "month" ? metering::Resets::monthly
+                                                                 : metering::Resets::never};
 }
 
 std::optional<model::MeterMap> read_end_uses(TomlReader& table) {
@@ -190,6 +194,18 @@ std::string read_meter_id(TomlReader& table) {
     table.problem_at("id", fmt::format("'id' is \"{}\"; use 1 to 40 of a-z, 0-9, - and _", id));
   }
   return id;
+}
+
+/// Stamps may lie beside the grid by a tenth of the interval, or nobody knows which one they mean.
+seconds read_grid_tolerance(TomlReader& table, const std::optional<seconds>& interval) {
+  const auto tolerance = table.duration("grid_tolerance").value_or(seconds{0});
+  const seconds longest = interval.value_or(std::chrono::hours{1}) / 10;
+  if (tolerance <= longest) return tolerance;
+  table.problem_at("grid_tolerance",
+                   fmt::format("'grid_tolerance' is {} s; it may be a tenth of the interval at "
+                               "most, {} s",
+                               tolerance.count(), longest.count()));
+  return longest;
 }
 
 /// A [[meter]] with role = "weather".
@@ -255,6 +271,9 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
     config.stamps = read_stamps(table);
   }
   config.interval = read_interval(table, "interval");
+  if (config.source == MeterSource::csv) {
+    config.grid_tolerance = read_grid_tolerance(table, config.interval);
+  }
   meter.interval = config.interval.value_or(site.interval);
   meter.rated_kW = table.number("rated_kW", kPositive);
   meter.zero_run_max = table.duration("zero_run_max");
@@ -283,13 +302,12 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
     fit_clock_format(table, config);
   }
   if (auto peak = table.table("peak")) read_peak(*peak, meter.peak);
-  if (auto counter = table.table("counter")) {
-    if (config.source == MeterSource::http) {
-      table.problem_at("counter",
-                       "pushed values are means of intervals; leave out 'counter', or send the "
-                       "increase of the counter");
-    }
+  if (auto counter = table.table("counter"))
     config.counter = read_counter(*counter, meter.rated_kW);
+  if (config.counter) {
+    // What is delivered back is counted down.
+    config.counter->runs_back = meter.negative_is_valid;
+    if (config.source == MeterSource::http) config.mqtt = sent_counter(meter.interval);
   }
   meter.is_counted = config.counter || is_counted;
   config.end_uses = read_end_uses(table);

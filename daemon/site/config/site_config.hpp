@@ -62,12 +62,15 @@ struct MeterConfig {
   /// Of a weather sensor that sends: instants are values at the start of their interval.
   weather::RecordedValues values = weather::RecordedValues::mean;
   std::optional<std::chrono::seconds> interval;  ///< Declared; absent: as the file shows.
+  /// Of a file: stamps so far beside the grid of its intervals are put on it.
+  std::chrono::seconds grid_tolerance{0};
   double multiplier = 1.0;
   metering::UnitFactors units;
   std::optional<metering::CounterSettings> counter;
   std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
   std::optional<LiveMeterConfig> live;      ///< source = "modbus".
-  std::optional<MqttMeterConfig> mqtt;      ///< source = "mqtt".
+  /// source = "mqtt"; or "http" with a counter, whose samples are sent, from no topic.
+  std::optional<MqttMeterConfig> mqtt;
   std::vector<SumPart> sum_of;  ///< source = sum: meters of the site, all in files or all stored.
   std::string text;  ///< The table as TOML: whether a file that is read again says something else.
 

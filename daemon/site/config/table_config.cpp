@@ -50,6 +50,22 @@ void read_clock_format(TomlReader& meter, table::TableShape& shape) {
   }
 }
 
+/// A flag means one thing.
+void read_flags(TomlReader& meter, table::TableShape& shape) {
+  shape.flag_column = meter.text_or("flag_column", "");
+  for (const auto& [key, flags] : {std::pair{"missing_flags", &shape.missing_flags},
+                                   std::pair{"estimated_flags", &shape.estimated_flags}}) {
+    *flags = meter.texts(key).value_or(std::vector<std::string>{});
+    if (!meter.has(key) || !shape.flag_column.empty()) continue;
+    meter.problem_at(key, fmt::format("'{}' needs the 'flag_column' that has them", key));
+  }
+  for (const std::string& flag : shape.estimated_flags) {
+    if (std::ranges::find(shape.missing_flags, flag) == shape.missing_flags.end()) continue;
+    meter.problem_at("estimated_flags",
+                     fmt::format("'estimated_flags' has \"{}\", as 'missing_flags' does", flag));
+  }
+}
+
 void read_columns(TomlReader& meter, TableConfig& config) {
   table::TableShape& shape = config.shape;
   shape.time_column = meter.required_text("time_column");
@@ -58,6 +74,7 @@ void read_columns(TomlReader& meter, TableConfig& config) {
   config.column = meter.required_text("column");
   shape.meter_column = meter.text_or("meter_column", "");
   shape.unit_column = meter.text_or("unit_column", "");
+  read_flags(meter, shape);
   const std::vector<std::string_view> formats{table::kTimeFormats.begin(),
                                               table::kTimeFormats.end()};
   if (const auto word = meter.word("time_format", formats)) {
@@ -85,8 +102,9 @@ void read_columns(TomlReader& meter, TableConfig& config) {
 
 bool is_table(TomlReader& meter, const std::filesystem::path& file) {
   if (const auto format = read_format(meter)) return *format != "readings";
-  constexpr std::array kKeys{"time_column",  "clock_column", "time_format", "column",
-                             "meter_column", "unit_column",  "decimal",     "separator"};
+  constexpr std::array kKeys{"time_column", "clock_column", "time_format",
+                             "column",      "meter_column", "unit_column",
+                             "decimal",     "separator",    "flag_column"};
   return container_of(file) != Container::text ||
          std::ranges::any_of(kKeys, [&](const char* key) { return meter.has(key); });
 }

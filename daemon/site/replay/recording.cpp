@@ -13,7 +13,7 @@
 #include "core/absent.hpp"
 #include "core/metering/months/series_doubts.hpp"
 #include "daemon/site/replay/overlap_merge.hpp"
-#include "daemon/site/replay/register_watch.hpp"
+#include "daemon/site/replay/register_evidence.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -22,14 +22,24 @@ using metering::ClosedMonth;
 using metering::Instant;
 using metering::TimeSpan;
 
-csv::MeterRows rows_of(const MeterConfig& config) {
+/// By the clock of the meter a register is set to zero.
+metering::ResetTimes resets_of(const MeterConfig& config, const metering::LocalCalendar& site) {
+  if (!config.counter) return {};
+  const std::string& zone = config.table ? config.table->shape.timezone : "";
+  const auto own = zone.empty() ? site : metering::LocalCalendar::open(zone).value_or(site);
+  return metering::reset_times(config.counter->resets, own);
+}
+
+csv::MeterRows rows_of(const MeterConfig& config, const metering::LocalCalendar& calendar) {
   return {.name = config.name_in_file,
           .utility = config.meter.utility,
           .stamps = config.stamps,
           .interval = config.interval,
           .units = config.units,
           .multiplier = config.multiplier,
-          .counter = config.counter};
+          .counter = config.counter,
+          .resets = resets_of(config, calendar),
+          .grid_tolerance = config.grid_tolerance};
 }
 
 /// Meters that are read together from the same files.
@@ -67,9 +77,9 @@ class GroupReader {
       : group_(group), calendar_(calendar) {
     for (const std::size_t i : group.meters) {
       const MeterConfig& config = site.meters[i];
-      options_.meters.push_back(rows_of(config));
+      options_.meters.push_back(rows_of(config, calendar));
       if (!config.table) continue;
-      tables_.push_back({rows_of(config), config.table->column, config.table->unit});
+      tables_.push_back({rows_of(config, calendar), config.table->column, config.table->unit});
     }
   }
 
@@ -121,8 +131,10 @@ Result<void> read_group(const SiteConfig& site, const FileGroup& group,
   return {};
 }
 
-/// If the site file describes zero readings, they are not reported.
-bool expects_zero_runs(const MeterRecord& record) { return record.meter.zero_run_max.has_value(); }
+/// Zeros of a counter are measured, and those that the site file describes are known.
+bool expects_zero_runs(const MeterRecord& record) {
+  return record.meter.is_counted || record.meter.zero_run_max.has_value();
+}
 
 /// What one meter's closed months show besides their figures.
 class SlotRecord {
@@ -141,9 +153,9 @@ class SlotRecord {
                 const metering::LocalCalendar& calendar, MeterRecord& record,
                 Instant until = Instant::max()) const {
     const auto zero_runs = expects_zero_runs(record) ? std::vector<TimeSpan>{} : joined_zero_runs();
-    record.findings =
-        metering::describe_data(record.meter.id, episodes_until(until, record.meter.interval),
-                                zero_runs, figures, record.level_changes, record.counts, calendar);
+    record.findings = metering::describe_data(
+        record.meter.id, episodes_until(until, record.meter.interval), zero_runs, figures,
+        record.level_changes, record.counts, calendar, record.meter.rated_kW.has_value());
     std::ranges::move(doubts_.describe(record.meter.id), std::back_inserter(record.findings));
   }
 
@@ -373,17 +385,76 @@ Result<void> require_rows(const SiteConfig& site, const Recording& recording) {
   return {};
 }
 
+void add_warning(MeterRecord& record, std::string sentence, const TimeSpan& span = {}) {
+  record.findings.push_back(
+      {record.meter.id, std::move(sentence), span, 0, metering::DataFinding::Grade::warning});
+}
+
 /// Amounts that never fall are probably the readings of a cumulative register.
-void doubt_amounts(const RegisterWatch& watch, const MeterConfig& config, MeterRecord& record) {
-  if (record.meter.is_counted || !record.in_file || !watch.is_register()) return;
+void doubt_amounts(const RegisterEvidence& evidence, const MeterConfig& config,
+                   const metering::LocalCalendar& calendar, MeterRecord& record) {
+  if (record.meter.is_counted || !record.in_file) return;
   const auto unit = metering::find_unit(record.in_file->unit, record.meter.utility, config.units);
   if (unit && unit->is_rate) return;
+  const RegisterVerdict verdict = evidence.verdict(calendar);
+  if (!verdict.is_register) return;
+  const std::string_view resets = verdict.resets == metering::Resets::daily ? ", resets = \"day\""
+                                  : verdict.resets == metering::Resets::monthly
+                                      ? ", resets = \"month\""
+                                      : "";
   record.doubt = fmt::format(
-      "The values never fall, as those of a cumulative register; if it is one, add rated_kW = {} "
-      "and counter = {{ unit = \"kWh\" }} to its [[meter]].",
-      watch.rated_kW());
-  record.findings.push_back(
-      {record.meter.id, record.doubt, {}, 0, metering::DataFinding::Grade::warning});
+      "The values {}, as those of a cumulative register; if it is one, add rated_kW = {} and "
+      "counter = {{ unit = \"kWh\"{} }}{} to its [[meter]].",
+      verdict.runs_back ? "move far in small steps" : "hardly ever fall", verdict.rated_kW, resets,
+      verdict.runs_back ? " and negative_is_valid = true" : "");
+  add_warning(record, record.doubt);
+}
+
+/// What a register did besides counting. A bounce has cost nothing.
+void describe_register(const metering::LocalCalendar& calendar, MeterRecord& record) {
+  using metering::CounterEvent;
+  for (const metering::RegisterNote& note : record.rows.register_notes) {
+    const auto& [event, before, after] = note;
+    const std::string day = metering::to_string(calendar.local_time(after.time).date);
+    const std::string from_to =
+        fmt::format("from {:.1f} to {:.1f} kWh", before.value_kWh, after.value_kWh);
+    const TimeSpan span{before.time, after.time};
+    if (event == CounterEvent::reset) {
+      add_warning(
+          record,
+          fmt::format("Its register fell on {} {} and went on from there: exchanged, or set "
+                      "to zero. Nothing is counted across that.",
+                      day, from_to),
+          span);
+    } else if (event == CounterEvent::jump) {
+      add_warning(record,
+                  fmt::format("Its register rose on {} {}, by more than its load can use, and went "
+                              "on from there: exchanged. The rise is not counted.",
+                              day, from_to),
+                  span);
+    } else if (event == CounterEvent::caught_up) {
+      add_warning(record,
+                  fmt::format("Its register stood still until {} and then rose at once {}: it had "
+                              "counted meanwhile, so the rise is distributed over the standstill.",
+                              day, from_to),
+                  span);
+    } else if (event == CounterEvent::no_total || event == CounterEvent::erratic) {
+      add_warning(record,
+                  fmt::format("Its register contradicts itself on {} ({}): it is no total, or "
+                              "rated_kW is too low.",
+                              day, from_to),
+                  span);
+    }
+  }
+}
+
+/// What its rows show beside their values.
+void describe_rows(MeterRecord& record) {
+  if (!record.in_file) return;
+  for (const std::string& sentence :
+       csv::step_sentences(record.rows.steps, record.in_file->interval)) {
+    add_warning(record, sentence);
+  }
 }
 
 constexpr TimeSpan kAllTime{Instant{}, metering::kLatestInstant};
@@ -453,23 +524,24 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
     closer.add(placed);
   };
 
-  std::vector<RegisterWatch> watches(site.meters.size());
+  std::vector<RegisterEvidence> evidence(site.meters.size());
   for (const FileGroup& group : group_by_files(site)) {
     const std::vector<std::size_t>& indices = group.meters;
-    const csv::ReadingsSink sink{.on_meter =
-                                     [&](const csv::MeterInFile& shown) {
-                                       const std::size_t i = indices[shown.meter];
-                                       closer.set_grid(static_cast<std::uint32_t>(i),
-                                                       shown.interval, shown.phase);
-                                       recording.meters[i].in_file = shown;
-                                     },
-                                 .on_reading =
-                                     [&](const metering::Reading& reading) {
-                                       take(indices[reading.meter], reading);
-                                       watches[indices[reading.meter]].take(reading);
-                                       for (Sum& sum : sums)
-                                         sum.take(indices[reading.meter], reading);
-                                     }};
+    const csv::ReadingsSink sink{
+        .on_meter =
+            [&](const csv::MeterInFile& shown) {
+              const std::size_t i = indices[shown.meter];
+              closer.set_grid(static_cast<std::uint32_t>(i), shown.interval, shown.phase);
+              recording.meters[i].in_file = shown;
+            },
+        .on_reading =
+            [&](const metering::Reading& reading) {
+              take(indices[reading.meter], reading);
+              const auto interval = closer.meters()[indices[reading.meter]].interval;
+              evidence[indices[reading.meter]].take(reading.start,
+                                                    reading.mean_kW * metering::in_hours(interval));
+              for (Sum& sum : sums) sum.take(indices[reading.meter], reading);
+            }};
     TRY(read_group(site, group, calendar, sink, recording));
   }
   TRY(require_rows(site, recording));
@@ -487,8 +559,10 @@ Result<Recording> replay_meters(const SiteConfig& site, const metering::LocalCal
   }
   closer.finish();
   recorder.describe(closer, calendar, last_end);
-  for (std::size_t i = 0; i < watches.size(); ++i) {
-    doubt_amounts(watches[i], site.meters[i], recording.meters[i]);
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    doubt_amounts(evidence[i], site.meters[i], calendar, recording.meters[i]);
+    describe_register(calendar, recording.meters[i]);
+    describe_rows(recording.meters[i]);
   }
   return recording;
 }

@@ -19,7 +19,6 @@
 #include "adapters/table/read_table.hpp"
 #include "adapters/table/xlsx.hpp"
 #include "core/text/ascii.hpp"
-#include "daemon/site/replay/register_watch.hpp"
 #include "daemon/site/setup/clock_evidence.hpp"
 #include "daemon/site/setup/utility_guess.hpp"
 
@@ -36,6 +35,7 @@ constexpr std::size_t kMetersMax = 500;
 constexpr double kTypicalGas_kWh_per_m3 = 10.55;
 constexpr int kFrozenIntervals =
     12;  // as a meter is taken for frozen unless a site file says otherwise
+constexpr seconds kLooseInterval{900};
 constexpr std::string_view kOwnHeader = "timestamp,meter,value,unit";
 
 tl::unexpected<Error> about(const std::filesystem::path& file, const Error& error) {
@@ -230,7 +230,8 @@ Result<std::vector<SurveyedMeter>> meters_of_feed(const std::filesystem::path& f
 
 /// What the readings of one meter show, as they pass.
 struct MeterWatch {
-  RegisterWatch as_register;
+  RegisterEvidence as_register;  ///< Of its rows.
+  bool is_rate = false;
   std::uint64_t values = 0;
   double sum_kW = 0.0;
   double first = 0.0;
@@ -242,7 +243,6 @@ struct MeterWatch {
 
   void take(const metering::Reading& reading) {
     if (std::isnan(reading.mean_kW)) return;
-    as_register.take(reading);
     if (values == 0) first = reading.mean_kW;
     ++values;
     sum_kW += reading.mean_kW;
@@ -271,27 +271,110 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
   WholeFile whole;
   whole.watches.resize(survey.meters.size());
   for (SurveyedMeter& meter : survey.meters) meter.samples = {};
-  const csv::ReadingsSink sink{.on_meter = {}, .on_reading = [&](const metering::Reading& reading) {
-                                 whole.watches[reading.meter].take(reading);
-                                 survey.meters[reading.meter].samples.take(reading.start,
-                                                                           reading.mean_kW);
-                               }};
+  const csv::ReadingsSink sink{.on_meter = {},
+                               .on_reading =
+                                   [&](const metering::Reading& reading) {
+                                     whole.watches[reading.meter].take(reading);
+                                     survey.meters[reading.meter].samples.take(reading.start,
+                                                                               reading.mean_kW);
+                                   },
+                               .on_row =
+                                   [&](const csv::RawRow& row) {
+                                     MeterWatch& watch = whole.watches[row.meter];
+                                     watch.is_rate = row.is_rate;
+                                     if (!row.is_rate) watch.as_register.take(row.stamp, row.value);
+                                   }};
   std::vector<table::TableMeter> meters;
   for (const SurveyedMeter& meter : survey.meters) {
     csv::MeterRows rows{.name = meter.name_in_file,
                         .utility = meter.utility.value,
                         .interval = survey.told_interval,
                         .units = factors_of(meter)};
+    if (meter.is_register && meter.as_register.is_register) {
+      rows.counter = {.rated_kW = meter.as_register.rated_kW,
+                      .runs_back = meter.as_register.runs_back,
+                      .resets = meter.as_register.resets};
+      rows.resets = metering::reset_times(meter.as_register.resets, calendar);
+    }
+    if (meter.interval > seconds{0}) rows.interval = meter.interval;
     const bool is_said = survey.table && survey.table->shape.unit_column.empty();
     meters.push_back({std::move(rows), meter.column, is_said ? unit_read(meter) : ""});
   }
-  csv::ReadingIntake intake{table::intake_options(meters), sink};
+  csv::ReadingsOptions options = table::intake_options(meters);
+  options.finds_tolerance = true;
+  csv::ReadingIntake intake{options, sink};
   const std::filesystem::path& file = survey.files.front();
   TRY(survey.table
           ? table::read_table(file, survey.table->shape, meters, calendar, intake, &whole.clock)
-          : csv::read_readings(file, table::intake_options(meters), intake));
+          : csv::read_readings(file, options, intake));
   whole.report = intake.finish();
   return whole;
+}
+
+/// What the flags of the file mean, once all are known.
+/// @return whether the file is to be read again.
+bool learn_flags(SurveyedExport& survey, const WholeFile& whole) {
+  if (!survey.table || survey.table->shape.flag_column.empty()) return false;
+  table::TableShape& shape = survey.table->shape;
+  if (shape.container == Container::green_button) return false;
+  const table::FlagMeanings meanings = table::meanings_of(whole.clock.flags);
+  const auto words_of = [](const table::FlagCount& flag) {
+    return fmt::format("{} ({} rows{})", csv::in_quotes(flag.flag), flag.rows,
+                       flag.empty == flag.rows ? ", all zero or blank" : "");
+  };
+  std::vector<std::string> known;
+  std::vector<std::string> unknown;
+  for (const table::FlagCount& flag : whole.clock.flags) {
+    const auto has = [&](const std::vector<std::string>& list) {
+      return std::ranges::find(list, flag.flag) != list.end();
+    };
+    if (has(meanings.missing)) known.push_back(words_of(flag) + " are no data");
+    if (has(meanings.estimated)) known.push_back(words_of(flag) + " are estimates");
+  }
+  for (const table::FlagCount& flag : meanings.unknown) unknown.push_back(words_of(flag));
+  const std::string where = fmt::format("{}: column {}", survey.files.front().filename().string(),
+                                        csv::in_quotes(shape.flag_column));
+  if (!known.empty()) {
+    survey.notes.push_back(
+        fmt::format("{} says that values beside {}.", where, fmt::join(known, ", ")));
+  }
+  if (!unknown.empty()) {
+    survey.notes.push_back(fmt::format(
+        "{} has {}, whose meaning is not known; such values are taken for measured. If they are no "
+        "data, write missing_flags, if they are estimates, estimated_flags.",
+        where, fmt::join(unknown, ", ")));
+  }
+  shape.missing_flags = meanings.missing;
+  shape.estimated_flags = meanings.estimated;
+  if (known.empty() && unknown.empty()) shape.flag_column.clear();
+  return !known.empty();
+}
+
+/// Meters that only show in their rows how they are to be read: registers, and values that come at
+/// longer steps later.
+/// @return whether there are any, so that the file is to be read again.
+bool learn_from_rows(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                     const WholeFile& whole) {
+  bool is_new = false;
+  for (std::size_t i = 0; i < survey.meters.size(); ++i) {
+    SurveyedMeter& meter = survey.meters[i];
+    const csv::MeterReport& report = whole.report.meters[i];
+    const bool was_read = report.shown.interval > seconds{0};
+    seconds longest{0};
+    for (const csv::RowStep& step : report.steps) {
+      if (step.left_out > 0 && step.step <= csv::kIntervalMax)
+        longest = std::max(longest, step.step);
+    }
+    if (was_read && csv::is_interval(longest)) {
+      meter.interval = longest;
+      is_new = true;
+    } else if (!whole.watches[i].is_rate && !meter.is_register) {
+      meter.as_register = whole.watches[i].as_register.verdict(calendar);
+      meter.is_register = meter.as_register.is_register;
+      is_new = is_new || meter.is_register;
+    }
+  }
+  return is_new;
 }
 
 /// A clock that is never changed, if the stamps show it on more than one day.
@@ -395,6 +478,48 @@ Guess<csv::Stamps> guess_stamps(const SurveyedExport& survey, const metering::Ti
   return {csv::Stamps::start, "guessed; a file of whole days would decide"};
 }
 
+/// Rounded up to what a person would write.
+seconds tolerance_for(seconds beside) {
+  for (const int rounded : {0, 1, 2, 5, 10, 15, 20, 30, 45, 60, 90}) {
+    if (beside <= seconds{rounded}) return seconds{rounded};
+  }
+  return std::chrono::ceil<std::chrono::minutes>(beside);
+}
+
+/// What of a meter's rows a person should know.
+void describe_meter(SurveyedExport& survey, SurveyedMeter& meter, const csv::MeterReport& report,
+                    const metering::LocalCalendar& calendar) {
+  const auto note = [&](const std::string& sentence) {
+    survey.notes.push_back(fmt::format("{}: {}", meter.name, sentence));
+  };
+  if (!meter.is_register) {
+    for (const std::string& sentence : csv::step_sentences(report.steps, meter.interval)) {
+      note(sentence);
+    }
+    if (meter.grid_tolerance > seconds{0}) {
+      note(fmt::format("stamps lie up to {} s beside the start of an interval and are put on it.",
+                       report.beside_max.count()));
+    }
+    return;
+  }
+  const std::string& zone = meter.as_register.reset_zone;
+  // Where stamps say their offset, the zone says by whose midnights a register is set to zero.
+  const bool may_have_zone = survey.table && survey.table->has_offsets;
+  if (!zone.empty() && may_have_zone && survey.table->shape.timezone.empty()) {
+    survey.table->shape.timezone = zone;
+    survey.clock_because = "by whose midnights its register falls to zero";
+  } else if (!zone.empty()) {
+    meter.as_register.resets = metering::Resets::never;
+  }
+  for (const RegisterStep& step : meter.as_register.exchanges) {
+    note(
+        fmt::format("its register went from {:.1f} to {:.1f} kWh on {}: exchanged, or set to "
+                    "another number. Nothing is counted across that.",
+                    step.from.value_kWh, step.to.value_kWh,
+                    metering::to_string(calendar.local_time(step.to.time).date)));
+  }
+}
+
 void take_results(SurveyedExport& survey, const WholeFile& whole,
                   const metering::LocalCalendar& calendar) {
   std::vector<SurveyedMeter> usable;
@@ -430,14 +555,20 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     const auto unit =
         metering::find_unit(report.shown.unit, meter.utility.value, factors_of(meter));
     const bool is_rate = unit && unit->is_rate;
-    meter.is_register = !is_rate && (meter.is_register || watch.as_register.is_register());
-    meter.rated_kW = watch.as_register.rated_kW();
-    if (meter.is_register) {
+    const bool was_read_as_register = meter.is_register && meter.as_register.is_register;
+    meter.as_register = watch.as_register.verdict(calendar);
+    meter.is_register = !is_rate && (meter.is_register || meter.as_register.is_register);
+    meter.grid_tolerance = tolerance_for(report.beside_max);
+    meter.is_of_other_steps = report.steps.size() != 1 || report.steps[0].step != meter.interval;
+    describe_meter(survey, meter, report, calendar);
+    if (meter.is_register && !was_read_as_register) {
       // A register's value over an interval, as if it were the interval's energy.
       const double intervals = static_cast<double>(meter.span.length() / meter.interval);
       meter.mean_kW = std::max(0.0, watch.last - watch.first) / intervals;
     }
     if (meter.is_register) {
+      // Between samples at any time a register is not known to the minute.
+      if (report.beside_max > seconds{0}) meter.interval = std::max(meter.interval, kLooseInterval);
       meter.stamps = {csv::Stamps::start, "no matter: a register stands at its stamp"};
     }
     usable.push_back(std::move(meter));
@@ -670,6 +801,11 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   if (auto found = find_clock_format(*survey, *clock); !found) return about(file, found.error());
   auto whole = read_whole(*survey, *clock);
   if (!whole) return about(file, whole.error());
+  const bool has_flags = learn_flags(*survey, *whole);
+  if (learn_from_rows(*survey, *clock, *whole) || has_flags) {
+    whole = read_whole(*survey, *clock);
+    if (!whole) return about(file, whole.error());
+  }
   if (survey->table) {
     if (auto tried = try_fixed_clock(*survey, *clock, *whole); !tried) {
       return about(file, tried.error());

@@ -11,6 +11,7 @@
 #include "core/metering/civil_time.hpp"
 #include "core/metering/reading.hpp"
 #include "core/result.hpp"
+#include "daemon/site/replay/register_evidence.hpp"
 #include "daemon/site/setup/meter_sums.hpp"
 #include "daemon/site/setup/survey_hints.hpp"
 
@@ -31,9 +32,11 @@ struct SurveyedMeter {
   Guess<metering::Utility> utility;
   Guess<csv::Stamps> stamps{csv::Stamps::start, ""};
   std::chrono::seconds interval{0};
+  bool is_of_other_steps = false;    ///< Its rows come at others than its interval.
   bool needs_heating_value = false;  ///< Gas by volume.
   bool is_register = false;
-  double rated_kW = 0.0;  ///< Of a register: more than it ever rose by.
+  RegisterVerdict as_register;             ///< Of a register: of what kind, and more.
+  std::chrono::seconds grid_tolerance{0};  ///< Its stamps lie beside the grid by so much.
   double zero_share = 0.0;
   double frozen_share = 0.0;  ///< In runs of equal values longer than a meter is believed to have.
   double negative_share = 0.0;

@@ -72,7 +72,8 @@ void join(SurveyedMeter& meter, const SurveyedMeter& more) {
   mean(meter.frozen_share, more.frozen_share);
   mean(meter.negative_share, more.negative_share);
   if (is_guessed(meter.stamps)) meter.stamps = more.stamps;
-  meter.rated_kW = std::max(meter.rated_kW, more.rated_kW);
+  meter.as_register.rated_kW = std::max(meter.as_register.rated_kW, more.as_register.rated_kW);
+  meter.grid_tolerance = std::max(meter.grid_tolerance, more.grid_tolerance);
   meter.readings += more.readings;
   meter.refused += more.refused;
   meter.span.begin = std::min(meter.span.begin, more.span.begin);

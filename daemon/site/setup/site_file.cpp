@@ -147,6 +147,12 @@ bool is_supported_interval(std::chrono::seconds length) {
   return std::set<std::int64_t>{1, 5, 10, 15, 30, 60}.contains(minutes);
 }
 
+std::string list_text(const std::vector<std::string>& texts) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : texts) quoted.push_back(toml_text(text));
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
 void write_shape(const SurveyedExport& one, const SurveyedMeter& meter, Lines& lines) {
   const table::TableGuess& guess = *one.table;
   const table::TableShape& shape = guess.shape;
@@ -182,16 +188,30 @@ void write_shape(const SurveyedExport& one, const SurveyedMeter& meter, Lines& l
   } else {
     lines.key("unit", toml_text(meter.unit.value), meter.unit.because);
   }
+  if (shape.flag_column.empty()) return;
+  lines.key("flag_column", toml_text(shape.flag_column), "says how good each value is");
+  if (!shape.missing_flags.empty()) {
+    lines.key("missing_flags", list_text(shape.missing_flags), "beside these is no data");
+  }
+  if (!shape.estimated_flags.empty()) {
+    lines.key("estimated_flags", list_text(shape.estimated_flags), "… and these are estimates");
+  }
 }
 
 std::string per_cent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
 void write_limits(const SurveyedMeter& meter, Lines& lines) {
   if (meter.is_register) {
-    lines.key("rated_kW", fmt::format("{}", meter.rated_kW),
+    const RegisterVerdict& shown = meter.as_register;
+    lines.key("rated_kW", fmt::format("{}", shown.rated_kW),
               "guessed: half as much again as it ever rose by; the most that it can draw");
-    lines.key("counter", "{ unit = \"kWh\" }",
-              "its values hardly ever fall: a cumulative register");
+    const std::string_view resets = shown.resets == metering::Resets::daily ? ", resets = \"day\""
+                                    : shown.resets == metering::Resets::monthly
+                                        ? ", resets = \"month\""
+                                        : "";
+    lines.key("counter", fmt::format("{{ unit = \"kWh\"{} }}", resets),
+              shown.because.empty() ? "as the feed says" : shown.because);
+    if (shown.runs_back) lines.key("negative_is_valid", "true", "it counts back what is delivered");
     return;
   }
   if (meter.utility.value == metering::Utility::electricity && meter.zero_share > kManyZeros) {
@@ -235,7 +255,13 @@ void write_meter(const SurveyedExport& one, const SurveyedMeter& meter, const st
     lines.key("gas_kWh_per_m3", "10.55", "guessed: the bill says it; 1000 BTU/ft3 are 10.35");
   }
   if (is_supported_interval(meter.interval)) {
-    lines.key("interval", toml_text(duration(meter.interval)), "the commonest step");
+    lines.key("interval", toml_text(duration(meter.interval)),
+              meter.is_of_other_steps ? "one that its rows fill; they come at other steps"
+                                      : "the commonest step");
+  }
+  if (meter.grid_tolerance > std::chrono::seconds{0} && !meter.is_register) {
+    lines.key("grid_tolerance", toml_text(fmt::format("{}s", meter.grid_tolerance.count())),
+              "its stamps lie beside the starts of its intervals");
   }
   lines.key("stamps", meter.stamps.value == csv::Stamps::end ? "\"end\"" : "\"start\"",
             meter.stamps.because);
@@ -286,7 +312,12 @@ void add_guesses(const PlacedMeter& placed, const std::string& id, SiteDraft& dr
     add(fmt::format("{}: stamps are taken for the starts of intervals.", id));
   }
   if (meter.is_register) {
-    add(fmt::format("{}: taken for a cumulative register; rated_kW = {}.", id, meter.rated_kW));
+    const metering::Resets resets = meter.as_register.resets;
+    add(fmt::format("{}: taken for a cumulative register{}; rated_kW = {}.", id,
+                    resets == metering::Resets::daily     ? " that is set to zero each day"
+                    : resets == metering::Resets::monthly ? " that is set to zero each month"
+                                                          : "",
+                    meter.as_register.rated_kW));
   }
   if (meter.needs_heating_value) {
     add(fmt::format("{}: a volume of gas, taken for 10.55 kWh/m3.", id));

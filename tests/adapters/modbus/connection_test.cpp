@@ -404,5 +404,65 @@ TEST(ModbusRtu, ACharacterTakesElevenBitsAt8E1) {
   EXPECT_EQ(line_time({.baud = 9600, .parity = Parity::none}, 24).count(), 25'000);
 }
 
+Connection rtu_to(const ScriptedServer& server) {
+  return Connection{
+      TcpEndpoint{.host = "127.0.0.1", .port = server.port(), .has_rtu_frames = true}};
+}
+
+TEST(RtuOverTcp, ReadsOverOneConnection) {
+  ScriptedServer server{[](const Bytes& request, int number) {
+    EXPECT_EQ(crc16(Bytes(request.begin(), request.end() - 2)),
+              request.back() << 8 | request[request.size() - 2]);
+    const Bytes reply = rtu_reply(request, static_cast<std::uint8_t>(number));
+    // Whole, or byte by byte, as a serial server forwards what its line brings.
+    if (number % 2 == 0) return std::vector<Piece>{{0ms, reply}};
+    std::vector<Piece> pieces;
+    for (const std::uint8_t byte : reply) pieces.push_back({1ms, {byte}});
+    return pieces;
+  }};
+  Connection connection = rtu_to(server);
+  for (std::uint16_t i = 0; i < 6; ++i) expect_value(connection.read(kTwoRegisters, 1s), i);
+  EXPECT_EQ(server.connections(), 1);
+}
+
+TEST(RtuOverTcp, AnExceptionKeepsTheConnection) {
+  ScriptedServer server{[](const Bytes& request, int number) {
+    const Bytes refusal = with_crc({request[0], static_cast<std::uint8_t>(request[1] | 0x80), 2});
+    return std::vector<Piece>{{0ms, number == 0 ? refusal : rtu_reply(request, 5)}};
+  }};
+  Connection connection = rtu_to(server);
+  expect_fault(connection.read(kTwoRegisters, 1s), ReadFault::exception);
+  expect_value(connection.read(kTwoRegisters, 1s), 5);
+  EXPECT_EQ(server.connections(), 1);
+}
+
+// Each byte of a reply wrong once: nothing but the right value is ever taken.
+TEST(RtuOverTcp, ADamagedByteIsNoValue) {
+  for (std::size_t at = 0; at < 9; ++at) {
+    ScriptedServer server{[at](const Bytes& request, int number) {
+      Bytes reply = rtu_reply(request, 5);
+      if (number == 0) reply[at] ^= 0x10;
+      return std::vector<Piece>{{0ms, reply}};
+    }};
+    Connection connection = rtu_to(server);
+    EXPECT_FALSE(connection.read(kTwoRegisters, 100ms).has_value()) << at;
+    expect_value(connection.read(kTwoRegisters, 1s), 5);
+  }
+}
+
+// A server passes the late reply to a request that was given up on to the next connection.
+TEST(RtuOverTcp, ALateReplyIsNotAnotherRegistersValue) {
+  Bytes late;
+  ScriptedServer server{[&late](const Bytes& request, int) {
+    const Bytes before = std::exchange(late, rtu_reply(request, 1));
+    return before.empty() ? std::vector<Piece>{} : std::vector<Piece>{{0ms, before}};
+  }};
+  Connection connection = rtu_to(server);
+  expect_fault(connection.read(kTwoRegisters, 60ms), ReadFault::timeout);
+  ReadRequest other = kTwoRegisters;
+  other.address = 200;
+  EXPECT_FALSE(connection.read(other, 60ms).has_value());
+}
+
 }  // namespace
 }  // namespace recald::modbus::connection_test

@@ -130,5 +130,24 @@ TEST(ReadPlan, PowersOfTenMayChangeFromReadToRead) {
   EXPECT_EQ(energy({0, 0x7FFF}).error(), ValueFault::not_finite);
 }
 
+// Each field of a read that a device may refuse has a read of its own, with the factor it needs.
+TEST(ReadPlan, ARefusedReadHasOthersInItsPlace) {
+  std::vector<RegisterField> fields{
+      field("a", 0, RegisterType::u32), field("b", 10, RegisterType::u32),
+      field("c", 90, RegisterType::u16), field("sf", 20, RegisterType::i16)};
+  fields[1].scale_factor = "sf";
+  auto reads = planned(fields);
+  ASSERT_THAT(reads, SizeIs(2));
+  add_single_reads(reads, fields);
+  ASSERT_THAT(reads, SizeIs(4));
+  EXPECT_TRUE(reads[0].may_split);
+  EXPECT_FALSE(reads[1].may_split);
+  EXPECT_THAT(reads[2].fields, ElementsAre(0));
+  EXPECT_THAT(reads[3].fields, ElementsAre(1, 3));
+  EXPECT_EQ(reads[3].address, 10);
+  EXPECT_EQ(reads[3].count, 11);
+  for (const std::size_t i : {2u, 3u}) EXPECT_EQ(reads[i].instead_of, 0u);
+}
+
 }  // namespace
 }  // namespace recald::modbus::register_map_test

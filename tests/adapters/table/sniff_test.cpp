@@ -122,7 +122,8 @@ TEST(Sniff, ColumnsOfTextAreNoMeters) {
   const TableGuess found = guess(cells);
   ASSERT_EQ(found.values.size(), 2u);
   EXPECT_EQ(found.values[1].column, "#4");  // the second of that name
-  EXPECT_EQ(found.ignored, (std::vector<std::string>{"Status (text)", "Nothing (empty)",
+  EXPECT_EQ(found.shape.flag_column, "Status");
+  EXPECT_EQ(found.ignored, (std::vector<std::string>{"Nothing (empty)",
                                                      "Outdoor (\xC2\xB0"
                                                      "C) (no energy)"}));
 }

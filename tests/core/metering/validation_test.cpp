@@ -222,6 +222,52 @@ TEST(Validation, RunsContinueOverMonthEndsOnBothSides) {
   EXPECT_EQ(suspects(september), 4);
 }
 
+// A house whose car is charged now and then: eleven kilowatts beside a few hundred watts.
+TEST(Validation, ALargeLoadIsBelievedOnceItRepeats) {
+  for (const int times : {1, 2, 8}) {
+    for (const int length : {1, 2, 4}) {
+      SCOPED_TRACE(times * 10 + length);
+      MonthSlots slots = hourly([&](int slot) {
+        const int day = slot / 24;
+        const bool charges =
+            day % 3 == 1 && day / 3 < times && slot % 24 >= 20 && slot % 24 < 20 + length;
+        return charges ? 10.6 + 0.1 * (day % 4) : 0.2 + 0.01 * (slot % 24);
+      });
+      validate(slots, hourly_meter(), {}, {});
+      // Single hours on two days are spikes still: that takes a third.
+      const bool is_doubted = times == 1 || (times == 2 && length == 1);
+      EXPECT_EQ(suspects(slots), is_doubted ? times * length : 0);
+    }
+  }
+}
+
+// … also on the day before the month began.
+TEST(Validation, ALargeLoadRepeatsAcrossMonths) {
+  const auto charged_on = [](int day) {
+    return [day](int slot) {
+      return slot / 24 == day && slot % 24 >= 20 ? 11.0 + 0.1 * (day % 3)
+                                                 : 0.2 + 0.01 * (slot % 24);
+    };
+  };
+  MonthSlots september = month_reading("UTC", month(2015, 9), kHour, charged_on(2));
+  const MonthSlots august = month_reading("UTC", month(2015, 8), kHour, charged_on(28));
+  validate(september, hourly_meter(), {&august, nullptr, {}}, {});
+  EXPECT_EQ(suspects(september), 0);
+}
+
+// A device's word for "no value" and a file that changes its unit for days repeat as well.
+TEST(Validation, RepeatedWordsAndSlipsOfUnitsAreNoLoad) {
+  MonthSlots words = hourly(
+      [](int slot) { return slot % 24 == 7 && slot / 24 % 4 == 0 ? 6553.5 : ordinary_kW(slot); });
+  validate(words, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(words), 8);
+  MonthSlots slips = hourly([](int slot) {
+    return ordinary_kW(slot) * (slot / 24 == 3 || slot / 24 == 9 ? 1000.0 : 1.0);
+  });
+  validate(slips, hourly_meter(), {}, {});
+  EXPECT_EQ(suspects(slips), 48);
+}
+
 TEST(Validation, WhatTheSourceSaidIsLeftAlone) {
   MonthSlots slots = hourly([](int) { return 7.0; });
   std::fill(slots.validity.begin(), slots.validity.end(), Validity::scaled);

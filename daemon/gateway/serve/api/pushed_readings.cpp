@@ -73,6 +73,14 @@ Checked<PushedUnit> unit_of(const nlohmann::json& body, const MeterConfig& meter
   if (!unit) return malformed("'unit' is needed, such as kWh", "unit");
   const auto conversion = metering::find_unit(*unit, meter.meter.utility, meter.units);
   if (!conversion) return refusal(400, "invalid_value", conversion.error().message, "unit");
+  if (meter.counter && conversion->is_rate) {
+    return refusal(
+        400, "invalid_value",
+        fmt::format("meter '{}' has a counter, but {} is a power; send what its register "
+                    "reads, such as in kWh",
+                    meter.meter.id, csv::in_quotes(*unit)),
+        "unit");
+  }
   return PushedUnit{.power = *conversion};
 }
 
@@ -110,6 +118,18 @@ Checked<std::optional<Correction>> correction_in(const nlohmann::json& body,
                     .sha256 = hash.hex()};
 }
 
+/// A register stands at its stamp, and its samples are not intervals that could be corrected.
+Checked<void> require_plain_samples(const nlohmann::json& body, const MeterConfig& meter) {
+  for (const auto& [key, advice] :
+       {std::pair{"stamps", "'time' is when its register was read, so leave out 'stamps'"},
+        {"reason", "its intervals are corrected by recald import"}}) {
+    if (!body.contains(key)) continue;
+    return refusal(400, "invalid_value",
+                   fmt::format("meter '{}' has a counter: {}", meter.meter.id, advice), key);
+  }
+  return {};
+}
+
 /// Reads the elements of `readings` one after the other.
 class Elements {
  public:
@@ -123,13 +143,7 @@ class Elements {
 
   [[nodiscard]] Checked<Reading> read(const nlohmann::json& element, std::size_t index) const {
     const std::string place = fmt::format("readings[{}]", index);
-    if (!element.is_object()) return malformed(place + " is not an object", place);
-    for (const auto& [key, value] : element.items()) {
-      if (key != "time" && key != "value") {
-        return malformed(fmt::format("{} has the unknown key {}", place, csv::in_quotes(key)),
-                         place);
-      }
-    }
+    TRY(check_keys(element, place));
     const auto start = TRY(start_of(element, place + ".time"));
     const auto mean_kW = TRY(mean_of(element, place + ".value"));
     Reading reading{.meter = 0, .start = start, .mean_kW = mean_kW};
@@ -142,53 +156,103 @@ class Elements {
     return reading;
   }
 
+  /// What a register read; NaN where it could not be read.
+  [[nodiscard]] Checked<metering::RegisterSample> read_sample(const nlohmann::json& element,
+                                                              std::size_t index) const {
+    const std::string place = fmt::format("readings[{}]", index);
+    TRY(check_keys(element, place));
+    const auto time = TRY(time_of(element, place + ".time"));
+    const auto number = TRY(number_of(element, place + ".value"));
+    return metering::RegisterSample{time, number * unit_.power.factor};
+  }
+
  private:
+  [[nodiscard]] static Checked<void> check_keys(const nlohmann::json& element,
+                                                const std::string& place) {
+    if (!element.is_object()) return malformed(place + " is not an object", place);
+    for (const auto& [key, value] : element.items()) {
+      if (key == "time" || key == "value") continue;
+      return malformed(fmt::format("{} has the unknown key {}", place, csv::in_quotes(key)), place);
+    }
+    return {};
+  }
+
   [[nodiscard]] metering::Reason doubt_of(double mean) const {
     if (unit_.quantity == nullptr) return metering::doubt_of(mean, meter_.meter, validation_);
     return weather::is_plausible(*unit_.quantity, mean) ? metering::Reason::none
                                                         : metering::Reason::range;
   }
 
-  [[nodiscard]] Checked<Instant> start_of(const nlohmann::json& element,
-                                          const std::string& place) const {
+  [[nodiscard]] static Checked<Instant> stamp_of(const nlohmann::json& element,
+                                                 const std::string& place) {
     const auto text = text_in(element, "time");
     const auto stamp = text ? csv::parse_timestamp(*text) : Result<Instant>{};
-    if (!text || !stamp) {
-      return refusal(400, "invalid_value",
-                     fmt::format("{} is {}; write a time such as 2026-03-01T00:00:00Z", place,
-                                 text ? csv::in_quotes(*text) : "not a text"),
-                     place);
-    }
+    if (text && stamp) return *stamp;
+    return refusal(400, "invalid_value",
+                   fmt::format("{} is {}; write a time such as 2026-03-01T00:00:00Z", place,
+                               text ? csv::in_quotes(*text) : "not a text"),
+                   place);
+  }
+
+  [[nodiscard]] Checked<Instant> start_of(const nlohmann::json& element,
+                                          const std::string& place) const {
+    const auto stamp = TRY(stamp_of(element, place));
     const seconds interval = meter_.meter.interval;
-    const Instant start = is_end_stamped_ ? *stamp - interval : *stamp;
+    const Instant start = is_end_stamped_ ? stamp - interval : stamp;
     if ((start.time_since_epoch() - meter_.meter.phase) % interval != seconds{0}) {
       return refusal(400, "invalid_value",
                      fmt::format("{} is {}, which is not a boundary of the meter's {} s intervals",
-                                 place, csv::in_quotes(*text), interval.count()),
+                                 place, quoted_time(element), interval.count()),
                      place);
     }
     const bool is_instant = meter_.values == weather::RecordedValues::instant;
-    if (start + (is_instant ? seconds{0} : interval) > now_ + kClocksDiffer) {
+    TRY(check_age(element, place, start, is_instant ? start : start + interval));
+    return start;
+  }
+
+  [[nodiscard]] Checked<Instant> time_of(const nlohmann::json& element,
+                                         const std::string& place) const {
+    const auto stamp = TRY(stamp_of(element, place));
+    TRY(check_age(element, place, stamp, stamp));
+    return stamp;
+  }
+
+  [[nodiscard]] static std::string quoted_time(const nlohmann::json& element) {
+    return csv::in_quotes(text_in(element, "time").value_or(""));
+  }
+
+  /// @param end  Of the interval; of an instant it is its begin.
+  [[nodiscard]] Checked<void> check_age(const nlohmann::json& element, const std::string& place,
+                                        Instant begin, Instant end) const {
+    if (end > now_ + kClocksDiffer) {
       return refusal(
           400, "invalid_value",
-          fmt::format("{} is {}{} after now, {}", place, csv::in_quotes(*text),
-                      is_instant ? "," : ": that interval ends", metering::to_string(now_)),
+          fmt::format("{} is {}{} after now, {}", place, quoted_time(element),
+                      begin == end ? "," : ": that interval ends", metering::to_string(now_)),
           place);
     }
-    if (start < now_ - kSentOldest) {
+    if (begin < now_ - kSentOldest) {
       return refusal(400, "invalid_value",
-                     fmt::format("{} is {}, more than {} days ago; {}", place,
-                                 csv::in_quotes(*text), kSentOldest.count(),
+                     fmt::format("{} is {}, more than {} days ago; {}", place, quoted_time(element),
+                                 kSentOldest.count(),
                                  unit_.quantity == nullptr
                                      ? "use recald import for older readings"
                                      : "older weather belongs in the file named by [weather] file"),
                      place);
     }
-    return start;
+    return {};
   }
 
   [[nodiscard]] Checked<double> mean_of(const nlohmann::json& element,
                                         const std::string& place) const {
+    const auto number = TRY(number_of(element, place));
+    if (unit_.quantity != nullptr) return number;
+    return unit_.power.mean_kW(number, meter_.meter.interval) * meter_.multiplier;
+  }
+
+  /// NaN for null.
+  [[nodiscard]] static Checked<double> number_of(const nlohmann::json& element,
+                                                 const std::string& place) {
     const auto value = element.find("value");
     if (value != element.end() && value->is_null()) {
       return kAbsent;
@@ -201,8 +265,7 @@ class Elements {
     if (!(std::abs(number) <= kSentValueMax)) {
       return refusal(400, "invalid_value", place + " is more than any meter counts", place);
     }
-    if (unit_.quantity != nullptr) return number;
-    return unit_.power.mean_kW(number, meter_.meter.interval) * meter_.multiplier;
+    return number;
   }
 
   const MeterConfig& meter_;
@@ -249,13 +312,17 @@ Checked<PushedReadings> parse_pushed(std::string_view body, const SiteConfig& si
     return malformed("'readings' is needed, with at least one", "readings");
   }
   auto correction = TRY(correction_in(json, body));
+  if (meter->counter) TRY(require_plain_samples(json, *meter));
   const Elements elements{*meter, site.closing.closing.validation, unit, stamps == "end", now};
   PushedReadings pushed{.meter = meter,
                         .quantity = unit.quantity,
                         .readings = {},
                         .correction = std::move(correction)};
-  pushed.readings.reserve(list->size());
-  for (std::size_t i = 0; i < list->size(); ++i) {
+  for (std::size_t i = 0; meter->counter && i < list->size(); ++i) {
+    const auto sample = TRY(elements.read_sample((*list)[i], i));
+    if (!std::isnan(sample.value_kWh)) pushed.samples.push_back(sample);
+  }
+  for (std::size_t i = 0; !meter->counter && i < list->size(); ++i) {
     auto reading = TRY(elements.read((*list)[i], i));
     pushed.readings.push_back(reading);
   }

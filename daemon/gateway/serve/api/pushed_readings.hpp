@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/metering/reading.hpp"
+#include "core/metering/registers/fall_run.hpp"
 #include "daemon/gateway/ingest/correction.hpp"
 #include "daemon/gateway/serve/api/parameters.hpp"
 #include "daemon/site/config/weather_sensors.hpp"
@@ -18,6 +19,8 @@ struct PushedReadings {
   const weather::SensorQuantity* quantity = nullptr;
   /// At least one; `meter` is 0. Values that the meter cannot have are `suspect`, with a reason.
   std::vector<metering::Reading> readings;
+  /// Of a meter with a counter, in the place of readings; none if all values are null.
+  std::vector<metering::RegisterSample> samples = {};
   std::optional<Correction> correction;  ///< Set if the readings correct stored ones.
 
   /// The id in the store: a meter's, or a channel's.
@@ -27,7 +30,8 @@ struct PushedReadings {
 /// @param body
 /// {"meter":"chw","unit":"kWh","stamps":"start","readings":[{"time":"…Z","value":1.5}]};
 ///              `stamps` may be absent and is "start" then, a null value is a missing interval.
-///              With `reason` (and `author`, default "api") it is a correction.
+///              With `reason` (and `author`, default "api") it is a correction. Of a meter with a
+///              counter the values are what its register read, at any time.
 /// @param now   Intervals that end later have not happened yet.
 /// @return the readings, or the response that refuses all of them: 400, 404 for an unknown meter,
 ///         409 for one whose readings come from elsewhere.

@@ -54,14 +54,17 @@ http::Response post_readings(const Served& served, const http::Request& request)
   auto pushed = parse_pushed(request.body, served.site, served.now());
   if (!pushed) return pushed.error();
   const std::string& id = pushed->meter->meter.id;
-  if (!served.take_readings) {
+  const bool has_counter = pushed->meter->counter.has_value();
+  if (has_counter ? !served.take_samples : !served.take_readings) {
     return http::error_response(
         409, "not_possible", fmt::format("this daemon does not accept readings of meter '{}'", id),
         "meter");
   }
   const auto suspect = suspect_json(*pushed, served.site.closing.closing.validation);
-  const auto counts =
-      served.take_readings(pushed->stored_id(), std::move(pushed->readings), pushed->correction);
+  const auto counts = has_counter
+                          ? served.take_samples(id, std::move(pushed->samples))
+                          : served.take_readings(pushed->stored_id(), std::move(pushed->readings),
+                                                 pushed->correction);
   if (!counts) {
     return not_taken("nothing was stored, send the readings again: " + counts.error().message);
   }
@@ -69,12 +72,14 @@ http::Response post_readings(const Served& served, const http::Request& request)
   for (const metering::Reading& reading : counts->conflicts) {
     conflicts.push_back(metering::to_string(reading.start));
   }
-  return json_answer({{"meter", id},
-                      {"stored", counts->taken},
-                      {"known", counts->duplicates},
-                      {"weaker", counts->weaker},
-                      {"conflicts", conflicts},
-                      {"suspect", suspect}});
+  nlohmann::ordered_json answer{{"meter", id},
+                                {"stored", counts->taken},
+                                {"known", counts->duplicates},
+                                {"weaker", counts->weaker},
+                                {"conflicts", conflicts},
+                                {"suspect", suspect}};
+  if (!counts->doubt.empty()) answer["doubt"] = counts->doubt;
+  return json_answer(std::move(answer));
 }
 
 }  // namespace recald::daemon

@@ -50,6 +50,10 @@ struct Served {
                                      std::vector<metering::Reading> readings,
                                      const std::optional<Correction>& correction)>
       take_readings = {};
+  /// Calls Gateway::take_samples. Absent: as above.
+  std::function<Result<CommitCounts>(const std::string& meter,
+                                     std::vector<metering::RegisterSample> samples)>
+      take_samples = {};
 };
 
 /// The response to any request: an API route, /healthz, /readyz, /metrics, a page.

@@ -63,6 +63,11 @@ modbus::RegisterField float64_at(std::string name, std::uint16_t address, std::s
           .unit = std::move(unit)};
 }
 
+void add_counter(modbus::RegisterMap& map) {
+  map.fields.push_back(float64_at("energy", 0, "kWh"));
+  map.energy = {"energy"};
+}
+
 }  // namespace
 
 MqttConfig read_mqtt(TomlReader& table, const std::string& site_id,
@@ -83,6 +88,14 @@ MqttConfig read_mqtt(TomlReader& table, const std::string& site_id,
   return config;
 }
 
+MqttMeterConfig sent_counter(seconds interval) {
+  MqttMeterConfig config{.every = interval};
+  config.map.name = "http";
+  config.map.limits.one_request_per_field = true;
+  add_counter(config.map);
+  return config;
+}
+
 MqttMeterConfig read_mqtt_meter(TomlReader& table, metering::Utility utility,
                                 const metering::UnitFactors& factors) {
   MqttMeterConfig config;
@@ -90,10 +103,7 @@ MqttMeterConfig read_mqtt_meter(TomlReader& table, metering::Utility utility,
   config.power = read_value(table, {"power_from", true, "W or kW"}, utility, factors);
   config.map.name = "mqtt";
   config.map.limits.one_request_per_field = true;
-  if (config.energy) {
-    config.map.fields.push_back(float64_at("energy", 0, "kWh"));
-    config.map.energy = {"energy"};
-  }
+  if (config.energy) add_counter(config.map);
   if (config.power) {
     config.map.fields.push_back(float64_at("power", 4, "kW"));
     config.map.power = "power";

@@ -52,4 +52,7 @@ struct MqttMeterConfig {
 [[nodiscard]] MqttMeterConfig read_mqtt_meter(TomlReader& table, metering::Utility utility,
                                               const metering::UnitFactors& factors);
 
+/// Of a meter whose counter is sent to the API instead of a broker.
+[[nodiscard]] MqttMeterConfig sent_counter(std::chrono::seconds interval);
+
 }  // namespace recald::daemon

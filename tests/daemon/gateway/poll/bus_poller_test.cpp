@@ -556,5 +556,50 @@ TEST(UnitHealth, FallsByMissesAndRisesByOneAnswer) {
   EXPECT_EQ(health.misses(), 0);
 }
 
+/// Two fields with registers between them, and what is read instead.
+PolledUnit unit_with_a_gap() {
+  PolledUnit made = unit(1);
+  made.reads = {{modbus::Function::read_holding_registers, 0, 12, {0, 1}},
+                {modbus::Function::read_holding_registers, 0, 2, {0}},
+                {modbus::Function::read_holding_registers, 10, 2, {1}}};
+  made.reads[0].may_split = true;
+  made.reads[1].instead_of = made.reads[2].instead_of = 0;
+  return made;
+}
+
+// A device that lacks registers between two fields: from the refusal on its fields are read one by
+// one, in the same poll already, and the read that was refused never again until all begins anew.
+TEST(BusPoller, ARefusedReadOfSeveralFieldsIsSplit) {
+  for (const int code : {2, 3}) {
+    VirtualBus bus{{unit_with_a_gap()}, [&](const BusOrder& order, const Moment&) {
+                     return order.request.count > 2 ? exception(code) : Reply{};
+                   }};
+    const auto count_of = [&](std::size_t read) {
+      return std::ranges::count_if(bus.made,
+                                   [&](const auto& one) { return one.order.read == read; });
+    };
+    bus.run(minutes{10});
+    EXPECT_EQ(count_of(0), 1);
+    EXPECT_EQ(count_of(1), count_of(2));
+    EXPECT_GE(count_of(1), 10);
+    EXPECT_EQ(bus.made[0].order.due, bus.made[2].order.due);
+    EXPECT_EQ(bus.poller.state(0), UnitState::up);
+    bus.poller.begin_anew();
+    bus.run(minutes{1});
+    EXPECT_EQ(count_of(0), 2);
+  }
+}
+
+// What answers is not split, and a device that is busy or has no such function is not helped by it.
+TEST(BusPoller, OtherRefusalsSplitNothing) {
+  for (const int code : {0, 1, 6, 11}) {
+    VirtualBus bus{{unit_with_a_gap()}, [&](const BusOrder&, const Moment&) {
+                     return code == 0 ? Reply{} : exception(code);
+                   }};
+    bus.run(minutes{10});
+    EXPECT_TRUE(std::ranges::all_of(bus.made, [](const auto& one) { return one.order.read == 0; }));
+  }
+}
+
 }  // namespace
 }  // namespace recald::daemon::bus_poller_test

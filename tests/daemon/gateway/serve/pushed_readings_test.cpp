@@ -394,5 +394,104 @@ INSTANTIATE_TEST_SUITE_P(
                   "400 malformed readings[1]"}),
     [](const auto& wrong) { return wrong.param.name; });
 
+class PushedCounter : public PushedMeterSite {
+ protected:
+  PushedCounter() {
+    MeterConfig& meter = site_.meters.back();
+    meter = load(served_site() + R"(
+[[meter]]
+id = "chw"
+source = "http"
+utility = "electricity"
+rated_kW = 40
+counter = { unit = "kWh" }
+)")
+                .meters.back();
+    begin();
+  }
+
+  /// Register samples from `start` on, a body each of so many.
+  Json push(metering::Instant start, std::chrono::seconds step, int count,
+            const std::function<double(metering::Instant)>& value_MWh) {
+    std::string list;
+    for (int i = 0; i < count; ++i) {
+      const metering::Instant at = start + i * step;
+      list += fmt::format(R"({}{{"time":"{}","value":{}}})", i == 0 ? "" : ",",
+                          metering::to_string(at), value_MWh(at));
+    }
+    return taken(fmt::format(R"({{"meter":"chw","unit":"MWh","readings":[{}]}})", list));
+  }
+};
+
+// Samples at any time, sent twice, through a restart and an exchange: what a polled counter would
+// have made of them.
+TEST_F(PushedCounter, IsCountedAsOneThatIsPolled) {
+  const metering::Instant begin_at = kStart - hours{20};
+  const auto reads = [&](metering::Instant t) {
+    const double used_kWh = 14.4 * metering::in_hours(t - begin_at);
+    const bool is_exchanged = t >= begin_at + hours{10};
+    return (is_exchanged ? 900'000.0 + used_kWh : 182'034.5 + used_kWh) / 1000.0;
+  };
+  constexpr std::chrono::seconds kStep{301};
+  for (int part = 0; part < 20; ++part) {
+    EXPECT_EQ(push(begin_at + part * 11 * kStep, kStep, 11, reads)["stored"], 11);
+    const Json again = push(begin_at + part * 11 * kStep, kStep, 11, reads);
+    EXPECT_EQ(again["stored"], 0);
+    EXPECT_EQ(again["known"], 11);
+    if (part == 5) begin();  // as after a restart
+  }
+  int ok = 0;
+  for (const Json& interval : intervals()) {
+    if (interval["validity"] != "ok") continue;
+    ++ok;
+    EXPECT_NEAR(interval["mean_kW"].get<double>(), 14.4, 1e-3);
+  }
+  EXPECT_GT(ok, 65);
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(get_json("/api/v1/events").dump(), HasSubstr("counter_jump"));
+}
+
+TEST_F(PushedCounter, APowerOrStampsOfIntervalsAreNoRegister) {
+  const auto said = [&](const std::string& rest) {
+    return in_short(post(R"({"meter":"chw",)" + rest +
+                         R"("readings":[{"time":"2024-03-30T10:00:07Z","value":7}]})"));
+  };
+  EXPECT_EQ(said(R"("unit":"kW",)"), "400 invalid_value unit");
+  EXPECT_EQ(said(R"("unit":"kWh","stamps":"end",)"), "400 invalid_value stamps");
+  EXPECT_EQ(said(R"("unit":"kWh","reason":"x",)"), "400 invalid_value reason");
+  EXPECT_EQ(said(R"("unit":"kWh",)"), "200");
+}
+
+class UnratedPushedMeter : public PushedMeterSite {
+ protected:
+  UnratedPushedMeter() {
+    site_.meters.back().meter.rated_kW.reset();
+    begin();
+  }
+};
+
+// A register that is sent as an amount is stored in doubt, and the answer and an event say what to
+// write.
+TEST_F(UnratedPushedMeter, ValuesThatOnlyRiseAreDoubted) {
+  std::string list;
+  for (int i = 0; i < 4; ++i) {
+    list += fmt::format(R"({}{{"time":"{}","value":{}}})", i == 0 ? "" : ",",
+                        metering::to_string(kStart - hours{3} + i * minutes{15}), 2034.5 + 3.6 * i);
+  }
+  const Json said = taken(fmt::format(R"({{"meter":"chw","unit":"kWh","readings":[{}]}})", list));
+  EXPECT_THAT(said["doubt"].get<std::string>(), HasSubstr("counter = { unit = \"kWh\" }"));
+  const Json stored = intervals();
+  ASSERT_THAT(stored, SizeIs(4));
+  for (const Json& interval : stored) EXPECT_EQ(interval["validity"], "suspect");
+  loop_.run_for(minutes{1});
+  EXPECT_THAT(get_json("/api/v1/events").dump(), HasSubstr("readings_rise"));
+}
+
+TEST_F(UnratedPushedMeter, OrdinaryAmountsAreNot) {
+  const Json said = taken(body_of(kStart - hours{9}, 32, 5.0));
+  EXPECT_FALSE(said.contains("doubt"));
+  for (const Json& interval : intervals()) EXPECT_EQ(interval["validity"], "ok");
+}
+
 }  // namespace
 }  // namespace recald::daemon

@@ -83,6 +83,10 @@ class ServedSite : public ::testing::Test, protected testing::RigInMemory {
                  .take_readings =
                      [this](const std::string& meter, auto readings, const auto& correction) {
                        return gateway_->take_pushed(meter, std::move(readings), correction);
+                     },
+                 .take_samples =
+                     [this](const std::string& meter, auto samples) {
+                       return gateway_->take_samples(meter, std::move(samples));
                      }};
 };
 

@@ -1,0 +1,86 @@
+#include "daemon/gateway/ingest/rising_watch.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace recald::daemon::rising_watch_test {
+namespace {
+
+using metering::Reading;
+using metering::Validity;
+using std::chrono::minutes;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const metering::Instant kStart = std::chrono::sys_days{std::chrono::year{2025} / 6 / 1};
+
+std::vector<Reading> readings(const std::vector<double>& values_kW, std::size_t first = 0) {
+  std::vector<Reading> made;
+  for (std::size_t i = 0; i < values_kW.size(); ++i) {
+    made.push_back({0, kStart + minutes{15} * (first + i), values_kW[i]});
+  }
+  return made;
+}
+
+bool is_suspect(const Reading& reading) { return reading.validity == Validity::suspect; }
+
+// Whatever the register's count and load, in one push or in pushes of one.
+TEST(RisingWatch, ARegisterIsFoundAndAllOfItDoubted) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random{seed};
+    std::uniform_real_distribution<double> load_kW{0.5, 40.0};
+    double register_kW = std::exp(std::uniform_real_distribution<double>{3.0, 10.0}(random));
+    RisingWatch watch;
+    std::ptrdiff_t doubted = 0;
+    const std::size_t at_once = seed % 2 == 0 ? 1 : 6;
+    for (std::size_t i = 0; i < 30; i += at_once) {
+      std::vector<double> values;
+      for (std::size_t k = 0; k < at_once; ++k) values.push_back(register_kW += load_kW(random));
+      auto pushed = readings(values, i);
+      const auto doubt = watch.look(pushed, minutes{15});
+      doubted = std::ssize(doubt.before) + std::ranges::count_if(pushed, is_suspect);
+      if (i + at_once == 30) EXPECT_THAT(doubt.words, HasSubstr("only rise"));
+    }
+    EXPECT_EQ(doubted, 30);
+  }
+}
+
+// A load never rises so evenly, in a morning neither.
+TEST(RisingWatch, ALoadIsNone) {
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random{seed};
+    std::normal_distribution<double> noise{0.0, 0.02};
+    std::vector<double> values_kW;
+    for (int i = 0; i < 400; ++i) {
+      const double of_day = std::sin(i / 96.0 * 6.283);
+      values_kW.push_back((30.0 + 20.0 * of_day) * (1.0 + noise(random)));
+    }
+    RisingWatch watch;
+    auto pushed = readings(values_kW);
+    EXPECT_THAT(watch.look(pushed, minutes{15}).words, IsEmpty());
+    EXPECT_EQ(std::ranges::count_if(pushed, is_suspect), 0);
+  }
+}
+
+// A steady load is the same again and again.
+TEST(RisingWatch, ASteadyLoadIsNone) {
+  RisingWatch watch;
+  auto pushed = readings(std::vector<double>(100, 12.0));
+  EXPECT_THAT(watch.look(pushed, minutes{15}).words, IsEmpty());
+}
+
+TEST(RisingWatch, OneValueLargerThanAnyBuildingsIsDoubted) {
+  RisingWatch watch;
+  auto pushed = readings({12.0, 728'138.0, 11.0});
+  EXPECT_THAT(watch.look(pushed, minutes{15}).words, HasSubstr("larger than any building's"));
+  EXPECT_TRUE(is_suspect(pushed[1]));
+  EXPECT_FALSE(is_suspect(pushed[0]) || is_suspect(pushed[2]));
+}
+
+}  // namespace
+}  // namespace recald::daemon::rising_watch_test
