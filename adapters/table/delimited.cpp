@@ -122,8 +122,10 @@ class Recoder {
 
 class DelimitedRows final : public RowSource {
  public:
-  DelimitedRows(csv::ByteSource bytes, char separator)
-      : lines_{as_utf8(std::move(bytes))}, separator_{separator} {}
+  DelimitedRows(csv::ByteSource bytes, char separator, const RowLimits& limits)
+      : lines_{as_utf8(std::move(bytes)), limits.line_bytes},
+        separator_{separator},
+        limits_{limits} {}
 
   bool next(TableRow& row) override {
     csv::Line line{};
@@ -134,8 +136,8 @@ class DelimitedRows final : public RowSource {
     row.problem = {};
     row.cells.clear();
     if (line.too_long) {
-      row.problem = "longer than 64 KiB";
-    } else if (!split_cells(line.text, separator_, row.cells, unquoted_)) {
+      row.problem = limits_.line_bytes > csv::kLineMax ? "longer than 2 MiB" : "longer than 64 KiB";
+    } else if (!split_cells(line.text, separator_, row.cells, unquoted_, limits_.cells)) {
       row.cells.clear();
       row.problem = "a quote is not closed, or text follows a closing quote";
     }
@@ -147,6 +149,7 @@ class DelimitedRows final : public RowSource {
  private:
   csv::LineReader lines_;
   char separator_;
+  RowLimits limits_;
   std::string unquoted_;
 };
 
@@ -166,11 +169,11 @@ bool take_quoted(std::string_view& line, std::string& unquoted) {
 }  // namespace
 
 bool split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells,
-                 std::string& unquoted) {
+                 std::string& unquoted, std::size_t cells_max) {
   // Contents are never longer than the line, so reserving once keeps earlier cells valid.
   unquoted.clear();
   unquoted.reserve(line.size());
-  while (cells.size() < kCellsMax) {
+  while (cells.size() < cells_max) {
     if (!line.empty() && line.front() == '"') {
       line.remove_prefix(1);
       const std::size_t begin = unquoted.size();
@@ -189,8 +192,9 @@ bool split_cells(std::string_view line, char separator, std::vector<std::string_
   return true;
 }
 
-std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator) {
-  return std::make_unique<DelimitedRows>(std::move(bytes), separator);
+std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator,
+                                          const RowLimits& limits) {
+  return std::make_unique<DelimitedRows>(std::move(bytes), separator, limits);
 }
 
 csv::ByteSource as_utf8(csv::ByteSource bytes) {

@@ -11,15 +11,25 @@
 
 namespace recald::table {
 
-/// Splits a line into trimmed cells by RFC 4180 with another separator. Up to kCellsMax.
-/// @param unquoted  Keeps the contents of quoted cells alive.
+struct RowLimits {
+  std::size_t line_bytes = csv::kLineMax;
+  std::size_t cells = kCellsMax;
+};
+/// For tables whose times run across: a year of quarters of an hour.
+inline constexpr RowLimits kWideRows{.line_bytes = 2u << 20, .cells = 40'000};
+
+/// Splits a line into trimmed cells by RFC 4180 with another separator.
+/// @param unquoted   Keeps the contents of quoted cells alive.
+/// @param cells_max  What is behind them is left out.
 /// @return false when a quote stays open, or text follows a closing one.
 [[nodiscard]] bool split_cells(std::string_view line, char separator,
-                               std::vector<std::string_view>& cells, std::string& unquoted);
+                               std::vector<std::string_view>& cells, std::string& unquoted,
+                               std::size_t cells_max = kCellsMax);
 
 /// Lines up to 64 KiB, LF or CRLF; UTF-8, or UTF-16 with a byte order mark. A line break within
 /// quotes is a bad line.
-[[nodiscard]] std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator);
+[[nodiscard]] std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator,
+                                                        const RowLimits& limits = {});
 
 /// Converts UTF-16 with a byte order mark to UTF-8, since some spreadsheets write "Unicode text";
 /// other text passes unchanged.
