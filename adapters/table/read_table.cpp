@@ -107,6 +107,10 @@ class TableReader {
     if (rows_.error()) return failed_source();
     if (order_ == Order::unknown) find_order();
     hand_on_kept();
+    // A column may be in a block further down, but in one it must be.
+    for (std::size_t i = 0; i < meters_.size(); ++i) {
+      if (!is_placed_[i]) return no_column(header_, meters_[i].column);
+    }
     return {};
   }
 
@@ -157,8 +161,31 @@ class TableReader {
   }
 
   Result<void> resolve(std::vector<std::string> header) {
+    is_placed_.assign(meters_.size(), false);
+    TRY(place_columns(std::move(header)));
+    next_of_name_.assign(meters_.size(), kNone);
+    is_first_of_name_.assign(meters_.size(), true);
+    for (std::size_t i = meters_.size(); i-- > 0;) {
+      const auto [known, is_new] = by_name_.try_emplace(meters_[i].rows.name, i);
+      if (is_new) continue;
+      next_of_name_[i] = std::exchange(known->second, i);
+      is_first_of_name_[next_of_name_[i]] = false;
+    }
+    for (std::size_t i = 0; i < meters_.size(); ++i) {
+      if (meters_[i].unit.empty()) continue;
+      if (auto known = intake_.set_unit(intake_.meter(i), meters_[i].unit); !known) return known;
+    }
+    const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
+    clocks_.assign(clocks, ClockReader{calendar_});
+    return {};
+  }
+
+  /// Finds the columns in the header above the rows that follow. Those of some meters may stand in
+  /// another block.
+  Result<void> place_columns(std::vector<std::string> header) {
     header_ = std::move(header);
     const auto place = [&](std::string_view column, std::size_t& into) -> Result<void> {
+      into = kNone;
       if (column.empty()) return {};
       const auto found = find_column(header_, column);
       if (!found) return no_column(header_, column);
@@ -167,20 +194,14 @@ class TableReader {
     };
     value_.assign(meters_.size(), kNone);
     for (std::size_t i = 0; i < meters_.size(); ++i) {
-      if (auto found = place(meters_[i].column, value_[i]); !found) return found;
+      const bool is_here = place(meters_[i].column, value_[i]).has_value();
+      is_placed_[i] = is_placed_[i] || is_here;
     }
     for (const auto& [column, into] :
          {std::pair{&shape_.time_column, &time_}, std::pair{&shape_.clock_column, &clock_},
           std::pair{&shape_.meter_column, &meter_}, std::pair{&shape_.unit_column, &unit_}}) {
       if (auto found = place(*column, *into); !found) return found;
     }
-    for (std::size_t i = 0; i < meters_.size(); ++i) {
-      by_name_.emplace(meters_[i].rows.name, i);
-      if (meters_[i].unit.empty()) continue;
-      if (auto known = intake_.set_unit(intake_.meter(i), meters_[i].unit); !known) return known;
-    }
-    const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
-    clocks_.assign(clocks, ClockReader{calendar_});
     return {};
   }
 
@@ -194,7 +215,8 @@ class TableReader {
       return;
     }
     const bool is_next_to_header = std::exchange(is_below_header_, false);
-    if (is_header_again(row) || (is_next_to_header && is_row_of_units(row))) return;
+    if (is_header_again(row)) return take_header_again(row);
+    if (is_next_to_header && is_row_of_units(row)) return;
     intake_.count_line();
     if (!row.is_terminated && !is_surely_whole(row)) {
       return intake_.refuse(
@@ -254,6 +276,20 @@ class TableReader {
     return time_ < header_.size() && cell(row, time_) == header_[time_];
   }
 
+  /// The header of another block, which may have other columns, or of one with none of ours.
+  void take_header_again(const TableRow& row) {
+    std::vector<std::string> header;
+    for (const std::string_view one : row.cells) header.push_back(utf8_of(one));
+    if (header == header_) return;
+    if (order_ != Order::old_to_new) {
+      find_order();
+      hand_on_kept();
+      order_ = Order::unknown;
+    }
+    is_below_header_ = true;
+    if (!place_columns(std::move(header))) value_.assign(meters_.size(), kNone);
+  }
+
   /// Whether the row below the names has no time, and no number in any meter's column.
   [[nodiscard]] bool is_row_of_units(const TableRow& row) const {
     if (parse_stamp(cell(row, time_), shape_.time_format)) return false;
@@ -296,27 +332,36 @@ class TableReader {
   void read_wide(const TableRow& row) {
     const auto instant = instant_of(row, 0, nullptr);
     if (!instant) return;
-    for (std::size_t i = 0; i < meters_.size(); ++i) take(row, i, *instant);
+    for (std::size_t i = 0; i < meters_.size(); ++i) {
+      if (value_[i] != kNone) take(row, i, *instant);
+    }
   }
 
   void read_long(const TableRow& row) {
     const std::string_view name = cell(row, meter_);
     const auto index = meter_named(name);
     if (!index) return intake_.count_other(utf8_of(name));
-    csv::IntakeMeter& meter = intake_.meter(*index);
-    const auto instant = instant_of(row, *index, &meter);
+    csv::IntakeMeter& first = intake_.meter(*index);
+    const auto instant = instant_of(row, *index, &first);
     if (!instant) return;
-    if (unit_ != kNone && (meter.unit.empty() || meter.unit != cell(row, unit_))) {
-      if (const auto known = intake_.set_unit(meter, cell(row, unit_)); !known) {
-        return intake_.refuse(row.number, known.error().message, row.text, &meter);
+    // A row may have a column for each of several meters of its name.
+    for (std::size_t i = *index; i != kNone; i = next_of_name_[i]) {
+      if (value_[i] == kNone) continue;
+      csv::IntakeMeter& meter = intake_.meter(i);
+      if (unit_ != kNone && (meter.unit.empty() || meter.unit != cell(row, unit_))) {
+        if (const auto known = intake_.set_unit(meter, cell(row, unit_)); !known) {
+          intake_.refuse(row.number, known.error().message, row.text, &meter);
+          continue;
+        }
       }
+      take(row, i, *instant);
     }
-    take(row, *index, *instant);
   }
 
   [[nodiscard]] std::optional<std::size_t> meter_named(std::string_view name) {
     for (const std::size_t guess : {last_meter_ + 1, last_meter_, std::size_t{0}}) {
-      if (guess >= meters_.size() || meters_[guess].rows.name != name) continue;
+      if (guess >= meters_.size() || !is_first_of_name_[guess]) continue;
+      if (meters_[guess].rows.name != name) continue;
       last_meter_ = guess;
       return guess;
     }
@@ -360,7 +405,10 @@ class TableReader {
   std::size_t clock_ = kNone;
   std::size_t meter_ = kNone;
   std::size_t unit_ = kNone;
-  std::map<std::string, std::size_t, std::less<>> by_name_;
+  std::vector<bool> is_placed_;  ///< Whether a block had the meter's column so far.
+  std::map<std::string, std::size_t, std::less<>> by_name_;  ///< The first meter of each name.
+  std::vector<std::size_t> next_of_name_;  ///< The next meter of the same name, or none.
+  std::vector<bool> is_first_of_name_;
   std::size_t last_meter_ = 0;
   std::vector<ClockReader> clocks_;  ///< One for the table, or one per meter of a long table.
   bool is_below_header_ = false;

@@ -11,16 +11,20 @@
 
 namespace recald::table {
 
-/// Opens the file with the container that its shape names.
+/// Opens the file with the container and the layout that its shape names, as rows of one time each.
+/// @param calendar  Of the table's clock, outlives the rows; for days with a clock change in a
+///                  table with a row a day. Null: all days have 24 hours.
 /// @return not_found, io_failed, malformed (not a workbook, no such sheet, not XML),
 ///         all with its name.
-[[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(const std::filesystem::path& file,
-                                                           const TableShape& shape);
+[[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(
+    const std::filesystem::path& file, const TableShape& shape,
+    const metering::LocalCalendar* calendar = nullptr);
 
 /// What was found out about clocks while a table was read.
 struct ClockFacts {
-  std::uint64_t naive = 0;    ///< Stamps without an offset.
-  std::uint64_t skipped = 0;  ///< Of these, times that the clock skips.
+  std::uint64_t naive = 0;           ///< Stamps without an offset.
+  std::uint64_t skipped = 0;         ///< Of these, times that the clock skips.
+  std::vector<std::string> notes{};  ///< Of the row source.
 };
 
 /// The intake's settings for these meters.
