@@ -12,12 +12,19 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/line_reader.hpp"
 #include "adapters/table/cell_number.hpp"
+#include "adapters/table/containers/influx_csv.hpp"
+#include "adapters/table/containers/nem12.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/green_button.hpp"
+#include "adapters/table/layouts/layout_rows.hpp"
+#include "adapters/table/loads/meter_parts.hpp"
+#include "adapters/table/loads/named_rows.hpp"
+#include "adapters/table/loads/rows_apart.hpp"
 #include "adapters/table/read_table.hpp"
-#include "adapters/table/xlsx.hpp"
 #include "core/text/ascii.hpp"
 #include "daemon/site/replay/register_watch.hpp"
+#include "daemon/site/setup/file_guess.hpp"
+#include "daemon/site/setup/load_parts.hpp"
 #include "daemon/site/setup/utility_guess.hpp"
 
 namespace recald::daemon {
@@ -28,7 +35,6 @@ using std::chrono::seconds;
 using table::Container;
 
 constexpr std::size_t kFirstBytes = 4096;
-constexpr std::size_t kSeparatorLines = 60;
 constexpr std::size_t kMetersMax = 500;
 constexpr double kTypicalGas_kWh_per_m3 = 10.55;
 constexpr int kFrozenIntervals =
@@ -49,62 +55,10 @@ Result<std::string> first_bytes(const std::filesystem::path& file) {
   return begin;
 }
 
-Result<std::vector<std::string>> first_lines(const std::filesystem::path& file) {
-  auto bytes = TRY(csv::open_file(file, "export"));
-  csv::LineReader reader{table::as_utf8(std::move(bytes))};
-  std::vector<std::string> lines;
-  for (csv::Line line{}; lines.size() < kSeparatorLines && reader.next(line);) {
-    lines.emplace_back(line.text);
-  }
-  if (reader.error()) return tl::unexpected(*reader.error());
-  return lines;
-}
-
 bool is_own(const std::vector<std::string>& lines) {
   const auto header = std::ranges::find_if(
       lines, [](const std::string& line) { return !line.empty() && line.front() != '#'; });
   return header != lines.end() && header->starts_with(kOwnHeader);
-}
-
-Result<std::vector<table::KeptRow>> head_of(const std::filesystem::path& file,
-                                            const table::TableShape& shape) {
-  const auto rows = TRY(table::open_rows(file, shape));
-  std::vector<table::KeptRow> kept;
-  for (table::TableRow row; kept.size() < table::kSniffedRows && rows->next(row);) {
-    kept.push_back({row.number, {}});
-    for (const std::string_view cell : row.cells) {
-      kept.back().cells.push_back(table::utf8_of(cell));
-    }
-  }
-  if (rows->error()) return tl::unexpected(*rows->error());
-  return kept;
-}
-
-Result<table::TableGuess> guess_text(const std::filesystem::path& file,
-                                     const std::vector<std::string>& lines) {
-  table::TableShape shape;
-  shape.separator = table::guess_separator(lines);
-  const auto head = TRY(head_of(file, shape));
-  auto guess = table::guess_table(head);
-  if (guess) guess->shape.separator = shape.separator;
-  return guess;
-}
-
-/// The first sheet that has a table.
-Result<table::TableGuess> guess_workbook(const std::filesystem::path& file) {
-  const auto names = TRY(table::sheet_names(file));
-  std::optional<Error> first;
-  for (const std::string& name : names) {
-    const auto head = TRY(head_of(file, {.container = Container::xlsx, .sheet = name}));
-    auto guess = table::guess_table(head);
-    if (guess) {
-      guess->shape.container = Container::xlsx;
-      guess->shape.sheet = name;
-      return guess;
-    }
-    if (!first) first = guess.error();
-  }
-  return tl::unexpected(first.value_or(Error{ErrorCode::malformed, "it has no sheet"}));
 }
 
 /// A meter before anything is known of its readings.
@@ -127,6 +81,29 @@ SurveyedMeter described(std::string name, std::string name_in_file, std::string 
   return meter;
 }
 
+/// Of the numbers of a statistic one is the load: the mean, not the least and the most; the total,
+/// not what a device shows.
+void keep_the_load(table::TableGuess& guess) {
+  const auto find = [&](std::string_view name) {
+    return std::ranges::find_if(
+        guess.values, [&](const table::GuessedColumn& one) { return to_lower(one.name) == name; });
+  };
+  const auto end = guess.values.end();
+  auto load = end;
+  if (find("min") != end || find("max") != end) load = find("mean");
+  if (find("sum") != end && find("state") != end) load = find("sum");
+  if (load == end) return;
+  const table::GuessedColumn kept = *load;
+  constexpr std::array<std::string_view, 6> kStatistics{"min", "max",   "mean",
+                                                        "sum", "state", "change"};
+  std::erase_if(guess.values, [&](const table::GuessedColumn& one) {
+    const bool is_other = one.column != kept.column &&
+                          std::ranges::find(kStatistics, to_lower(one.name)) != kStatistics.end();
+    if (is_other) guess.ignored.push_back(fmt::format("{} (beside {})", one.column, kept.column));
+    return is_other;
+  });
+}
+
 std::vector<SurveyedMeter> meters_of_columns(const table::TableGuess& guess,
                                              const std::string& file_stem) {
   std::vector<SurveyedMeter> meters;
@@ -146,7 +123,7 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
   std::vector<SurveyedMeter> meters;
   std::map<std::string, std::size_t, std::less<>> known;
   std::vector<std::string> header;
-  const table::GuessedColumn& value = guess.values.front();
+  const std::vector<table::GuessedColumn>& values = guess.values;
   std::optional<std::size_t> meter_at;
   std::optional<std::size_t> unit_at;
   std::optional<std::size_t> time_at;
@@ -172,12 +149,48 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
     const std::string text = table::utf8_of(name);
     known.emplace(std::string{name}, meters.size());
     const bool has_unit = unit_at && *unit_at < row.cells.size();
-    meters.push_back(described(text, text, value.column,
-                               has_unit ? table::utf8_of(row.cells[*unit_at]) : value.unit,
-                               has_unit ? "as its rows say" : "as the header says"));
+    for (const table::GuessedColumn& value : values) {
+      const std::string called = values.size() == 1 ? text : text + " " + value.name;
+      meters.push_back(described(called, text, value.column,
+                                 has_unit ? table::utf8_of(row.cells[*unit_at]) : value.unit,
+                                 has_unit ? "as its rows say" : "as the header says"));
+    }
   }
   if (rows->error()) return tl::unexpected(*rows->error());
   return meters;
+}
+
+/// "UsagePoint/1" of one of its meter readings.
+std::string_view usage_point(std::string_view name) {
+  return name.substr(0, name.find("/MeterReading"));
+}
+
+bool is_of_one_load(const table::FeedMeter& a, const table::FeedMeter& b) {
+  return usage_point(a.name) == usage_point(b.name) && a.unit == b.unit &&
+         a.is_register == b.is_register && a.is_reverse == b.is_reverse;
+}
+
+/// Registers of tariffs are parts of the first of them, or of the total where the feed has it.
+void join_tariff(std::span<const table::FeedMeter> feed, const table::FeedMeter& in_feed,
+                 SurveyedMeter& meter, std::vector<SurveyedMeter>& meters) {
+  const auto is_sibling = [&](const table::FeedMeter& other) {
+    return &other != &in_feed && is_of_one_load(other, in_feed);
+  };
+  if (in_feed.tariff != 0) {
+    const bool has_total = std::ranges::any_of(feed, [&](const table::FeedMeter& other) {
+      return is_sibling(other) && other.tariff == 0;
+    });
+    if (has_total) return;
+    for (SurveyedMeter& known : meters) {
+      const auto first = std::ranges::find(feed, known.name_in_file, &table::FeedMeter::name);
+      if (first == feed.end() || first->tariff == 0 || first->tariff == in_feed.tariff) continue;
+      if (!is_sibling(*first)) continue;
+      known.further_names.push_back(in_feed.name);
+      known.parts_because = "registers of tariffs, as the feed says, added up";
+      return;
+    }
+  }
+  meters.push_back(std::move(meter));
 }
 
 Result<std::vector<SurveyedMeter>> meters_of_feed(const std::filesystem::path& file) {
@@ -195,7 +208,7 @@ Result<std::vector<SurveyedMeter>> meters_of_feed(const std::filesystem::path& f
                                   !metering::find_unit(in_feed.unit, *in_feed.utility, {});
     }
     meter.is_register = in_feed.is_register;
-    meters.push_back(std::move(meter));
+    join_tariff(feed.meters, in_feed, meter, meters);
   }
   return meters;
 }
@@ -249,14 +262,18 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
     csv::MeterRows rows{
         .name = meter.name_in_file, .utility = meter.utility.value, .units = factors_of(meter)};
     const bool is_said = survey.table && survey.table->shape.unit_column.empty();
-    meters.push_back({std::move(rows), meter.column, is_said ? meter.unit.value : ""});
+    meters.push_back({std::move(rows), meter.column, is_said ? meter.unit.value : "",
+                      meter.further_names, meter.further_columns});
   }
-  csv::ReadingIntake intake{table::intake_options(meters), sink};
+  table::MeterParts parts{meters};
+  const csv::ReadingsSink of_parts = parts.sink(sink);
+  const csv::ReadingsOptions options = table::intake_options(parts.parts());
+  csv::ReadingIntake intake{options, of_parts};
   const std::filesystem::path& file = survey.files.front();
-  TRY(survey.table
-          ? table::read_table(file, survey.table->shape, meters, calendar, intake, &whole.clock)
-          : csv::read_readings(file, table::intake_options(meters), intake));
-  whole.report = intake.finish();
+  TRY(survey.table ? table::read_table(file, survey.table->shape, parts.parts(), calendar, intake,
+                                       &whole.clock)
+                   : csv::read_readings(file, options, intake));
+  whole.report = TRY(parts.finish(intake.finish()));
   return whole;
 }
 
@@ -355,7 +372,15 @@ Guess<csv::Stamps> guess_stamps(const SurveyedExport& survey, const metering::Ti
   if (survey.table->shape.container == Container::green_button) {
     return {csv::Stamps::start, "as Green Button feeds have it"};
   }
-  const std::string& column = survey.table->shape.time_column;
+  if (survey.table->shape.container == Container::nem12) {
+    return {csv::Stamps::start, "as NEM12 counts its intervals"};
+  }
+  const table::TableShape& shape = survey.table->shape;
+  if (shape.layout == table::Layout::row_a_day ||
+      (shape.layout == table::Layout::column_a_time && !shape.clock_column.empty())) {
+    return {csv::Stamps::start, "as its times run through whole days"};
+  }
+  const std::string& column = shape.time_column;
   if (says(column, {"end", "until", "bis"})) return {csv::Stamps::end, "by the column's name"};
   if (says(column, {"start", "begin", "from", "von", "ab "})) {
     return {csv::Stamps::start, "by the column's name"};
@@ -451,6 +476,102 @@ Result<std::vector<SurveyedMeter>> meters_of_own(const std::filesystem::path& fi
   return meters_of_rows(file, as_table);
 }
 
+/// Text that says itself what its readings are.
+Container container_in_text(const std::vector<std::string>& lines) {
+  const auto first = std::ranges::find_if(
+      lines, [](const std::string& line) { return !csv::trimmed(line).empty(); });
+  if (first != lines.end() && table::is_nem12(*first)) return Container::nem12;
+  return table::is_influx_csv(lines) ? Container::influx : Container::text;
+}
+
+/// Channels in units that are no energy, as reactive power is, beside others that are.
+void leave_out_other_quantities(SurveyedExport& survey) {
+  const auto is_other = [](const SurveyedMeter& meter) {
+    const auto unit = metering::find_unit(meter.unit.value, meter.utility.value, factors_of(meter));
+    return !unit && unit.error().code == ErrorCode::invalid_value;
+  };
+  if (std::ranges::all_of(survey.meters, is_other)) return;
+  std::vector<std::string> words;
+  for (const SurveyedMeter& meter : survey.meters) {
+    if (is_other(meter)) words.push_back(fmt::format("{} ({})", meter.name, meter.unit.value));
+  }
+  if (words.empty()) return;
+  std::erase_if(survey.meters, is_other);
+  survey.notes.push_back(fmt::format("{}: not energy, and left out: {}.",
+                                     survey.files.front().filename().string(),
+                                     fmt::join(words, ", ")));
+}
+
+/// Series without a unit, beside others that have one, are temperatures, switches and the like.
+void leave_out_without_unit(SurveyedExport& survey) {
+  const auto has_none = [](const SurveyedMeter& meter) {
+    return meter.unit.because.starts_with("guessed");
+  };
+  if (std::ranges::all_of(survey.meters, has_none)) {
+    survey.table->shape.unit_column.clear();
+    return;
+  }
+  std::vector<std::string> words;
+  for (const SurveyedMeter& meter : survey.meters) {
+    if (has_none(meter)) words.push_back(meter.name_in_file);
+  }
+  if (words.empty()) return;
+  std::erase_if(survey.meters, has_none);
+  survey.notes.push_back(fmt::format("{}: series without a unit of energy are left out: {}.",
+                                     survey.files.front().filename().string(),
+                                     fmt::join(words, ", ")));
+}
+
+/// Names of series without what all have in common, and without their units.
+void shorten_names(std::vector<SurveyedMeter>& meters) {
+  std::map<std::string, std::size_t> in_meters;
+  const auto parts_of_name = [](const std::string& name) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at <= name.size();) {
+      const std::size_t end = std::min(name.find(table::kNamesApart, at), name.size());
+      parts.push_back(name.substr(at, end - at));
+      at = end + table::kNamesApart.size();
+    }
+    return parts;
+  };
+  for (const SurveyedMeter& meter : meters) {
+    for (const std::string& part : parts_of_name(meter.name)) ++in_meters[part];
+  }
+  for (SurveyedMeter& meter : meters) {
+    std::string name;
+    for (const std::string& part : parts_of_name(meter.name)) {
+      const bool is_of_all = meters.size() > 1 && in_meters[part] == meters.size();
+      if (is_of_all || table::is_unit(part) || part == "value" || part == "_value") continue;
+      name += (name.empty() ? "" : " ") + part;
+    }
+    if (!name.empty()) meter.name = std::move(name);
+  }
+}
+
+/// NEM12 and annotated CSV: meters and units are found by reading it once.
+Result<SurveyedExport> export_with_description(const std::filesystem::path& file,
+                                               Container container) {
+  SurveyedExport survey{.files = {file}};
+  survey.table.emplace();
+  survey.table->shape = table::described_shape(container);
+  survey.table->has_offsets = true;
+  survey.table->values.push_back({"value", "value", ""});
+  survey.meters = TRY(meters_of_rows(file, *survey.table));
+  if (container == Container::influx) {
+    leave_out_without_unit(survey);
+    shorten_names(survey.meters);
+    return survey;
+  }
+  for (SurveyedMeter& meter : survey.meters) {
+    meter.utility = {metering::Utility::electricity, "as NEM12 is"};
+  }
+  survey.notes.push_back(
+      fmt::format("{}: its times are the market's, UTC+10 all year (Etc/GMT-10), as NEM12 has them "
+                  "wherever the meter is; channels B are what the building feeds in.",
+                  file.filename().string()));
+  return survey;
+}
+
 Result<SurveyedExport> described_export(const std::filesystem::path& file) {
   SurveyedExport survey{.files = {file}};
   const auto begin = TRY(first_bytes(file));
@@ -463,17 +584,28 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file) {
     auto meters = meters_of_feed(file);
     if (!meters) return about(file, meters.error());
     survey.meters = std::move(*meters);
+    leave_out_other_quantities(survey);
     return survey;
   }
-  const auto lines = TRY(first_lines(file));
-  if (*container == Container::text && is_own(lines)) {
+  std::vector<std::string> lines;
+  if (*container == Container::text) lines = TRY(first_lines(file));
+  const Container inside = *container == Container::text ? container_in_text(lines) : *container;
+  if (table::describes_itself(inside)) {
+    auto described = export_with_description(file, inside);
+    return described ? described : about(file, described.error());
+  }
+  if (inside == Container::text && is_own(lines)) {
     auto meters = meters_of_own(file);
     if (!meters) return about(file, meters.error());
     survey.meters = std::move(*meters);
     return survey;
   }
-  auto guess = *container == Container::xlsx ? guess_workbook(file) : guess_text(file, lines);
-  if (!guess) return about(file, guess.error());
+  auto guessed = guess_file(file, inside, lines);
+  if (!guessed) return about(file, guessed.error());
+  table::TableGuess* const guess = &guessed->table;
+  survey.layout_because = guessed->layout_because;
+  survey.notes = std::move(guessed->notes);
+  keep_the_load(*guess);
   if (guess->shape.meter_column.empty()) {
     survey.meters = meters_of_columns(*guess, file.stem().string());
   } else {
@@ -499,8 +631,86 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file) {
                                        table::to_string(guess->shape.time_format),
                                        guess->time_format_because));
   }
+  leave_out_other_quantities(survey);
   survey.table = std::move(*guess);
   return survey;
+}
+
+/// Rows that have the time of another row, or one before it.
+std::uint64_t out_of_order(const WholeFile& whole) {
+  std::uint64_t rows = 0;
+  for (const csv::MeterReport& meter : whole.report.meters) {
+    rows += meter.unsorted + meter.duplicates;
+  }
+  return rows;
+}
+
+/// Reads the file anew with meters that its rows are told apart by. What does not read better is
+/// left as it was.
+Result<bool> try_apart(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                       WholeFile& whole, SurveyedExport changed) {
+  if (changed.meters.empty()) return false;
+  auto again = TRY(read_whole(changed, calendar));
+  if (again.report.readings == 0 || 2 * out_of_order(again) > out_of_order(whole)) return false;
+  survey = std::move(changed);
+  whole = std::move(again);
+  return true;
+}
+
+/// Where times come twice or start again, other columns say of what the rows are: a register, a
+/// meter, the header or the title of another block.
+Result<void> tell_rows_apart(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                             WholeFile& whole) {
+  constexpr std::uint64_t kFew = 200;  // one row in so many may be wrong
+  const table::TableShape& shape = survey.table->shape;
+  const std::filesystem::path& file = survey.files.front();
+  if (table::describes_itself(shape.container)) return {};
+  if (out_of_order(whole) * kFew <= whole.report.readings) return {};
+  const auto further = TRY(columns_of_further_blocks(file, shape));
+  if (!further.empty() && shape.meter_column.empty()) {
+    SurveyedExport changed = survey;
+    auto& values = changed.table->values;
+    values.insert(values.end(), further.begin(), further.end());
+    changed.meters = meters_of_columns(*changed.table, file.stem().string());
+    const bool is_told = TRY(try_apart(survey, calendar, whole, std::move(changed)));
+    if (is_told) return {};
+  }
+  table::TableShape titled = shape;
+  titled.further_meter_columns.clear();
+  titled.meter_column = table::kTitleColumn;
+  // Of several columns of numbers, one may have the numbers of meters.
+  std::vector<std::string> values;
+  if (survey.table->values.size() == 1) values.push_back(survey.table->values.front().column);
+  const auto found =
+      TRY(table::columns_that_tell_apart([&] { return table::open_rows(file, titled, &calendar); },
+                                         table::shape_of_rows(titled), values));
+  if (!found) return {};
+  SurveyedExport changed = survey;
+  table::TableShape& apart = changed.table->shape;
+  apart.meter_column = found->columns.front();
+  apart.further_meter_columns.assign(std::next(found->columns.begin()), found->columns.end());
+  std::erase_if(changed.table->values, [&](const table::GuessedColumn& value) {
+    return std::ranges::find(found->columns, value.column) != found->columns.end() ||
+           std::ranges::find(found->alike, value.column) != found->alike.end();
+  });
+  if (changed.table->values.empty()) return {};
+  changed.meters = TRY(meters_of_rows(file, *changed.table));
+  changed.notes.push_back(
+      fmt::format("{}: times come more than once; {} {} apart what the rows are of ({} names).",
+                  file.filename().string(), fmt::join(found->columns, ", "),
+                  found->columns.size() == 1 ? "tells" : "tell", found->groups));
+  TRY(try_apart(survey, calendar, whole, std::move(changed)));
+  return {};
+}
+
+/// Meters that are parts of one load become one; what it is like shows when it is read again.
+Result<void> take_loads(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
+  const std::vector<FoundLoad> loads = find_loads(survey.meters);
+  if (loads.empty()) return {};
+  join_loads(loads, survey.meters);
+  const auto whole = TRY(read_whole(survey, calendar));
+  take_results(survey, whole, calendar);
+  return {};
 }
 
 bool is_without_zone(const SurveyedExport& survey) {
@@ -528,12 +738,19 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   auto whole = read_whole(*survey, *clock);
   if (!whole) return about(file, whole.error());
   if (survey->table) {
+    if (auto told = tell_rows_apart(*survey, *clock, *whole); !told) {
+      return about(file, told.error());
+    }
     if (auto tried = try_fixed_clock(*survey, *clock, *whole); !tried) {
       return about(file, tried.error());
     }
   }
   TRY(require_sound(*survey, *whole));
+  for (const std::string& note : whole->clock.notes) {
+    survey->notes.push_back(fmt::format("{}: {}.", file.filename().string(), note));
+  }
   take_results(*survey, *whole, *clock);
+  TRY(take_loads(*survey, *clock));
   if (survey->meters.empty()) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("'{}': no meter has a value that can be used", file.string()));
