@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -306,13 +308,17 @@ struct ListedReadings {
 };
 
 constexpr std::uint32_t kNoParent = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoColumn = kNoParent;
 
 /// Collects the readings at one place.
 class ListReader final : public PlaceTracker {
  public:
   explicit ListReader(ListPlace place) : where_{std::move(place)} {}
 
-  [[nodiscard]] ListedReadings take() { return std::move(listed_); }
+  [[nodiscard]] ListedReadings take() {
+    arrange_columns();
+    return std::move(listed_);
+  }
 
  private:
   /// Whether the place is an object or a list around the readings.
@@ -427,6 +433,42 @@ class ListReader final : public PlaceTracker {
                   static_cast<std::uint32_t>(text.size())});
     listed_.bytes += text;
     return true;
+  }
+
+  /// Columns of the readings come first. Of what stands around them, a number or a date that is the
+  /// same everywhere says nothing of a reading: a count of pages, a latitude, a period.
+  void arrange_columns() {
+    std::vector<bool> is_own(listed_.columns.size());
+    for (const ListedReadings::Cell& cell : listed_.cells) is_own[cell.column] = true;
+    std::vector<std::set<std::string_view>> texts(listed_.columns.size());
+    const std::string_view bytes = listed_.bytes;
+    for (const auto& around : listed_.surroundings) {
+      for (const auto& cell : around) {
+        if (texts[cell.column].size() > 1) continue;
+        texts[cell.column].insert(bytes.substr(cell.begin, cell.length));
+      }
+    }
+    std::vector<std::uint32_t> places(listed_.columns.size(), kNoColumn);
+    std::vector<std::string> columns;
+    for (const bool wants_own : {true, false}) {
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const bool is_idle = !is_own[i] && texts[i].size() == 1 && !has_letter(*texts[i].begin());
+        if (is_own[i] != wants_own || is_idle) continue;
+        places[i] = static_cast<std::uint32_t>(columns.size());
+        columns.push_back(std::move(listed_.columns[i]));
+      }
+    }
+    listed_.columns = std::move(columns);
+    for (ListedReadings::Cell& cell : listed_.cells) cell.column = places[cell.column];
+    for (auto& around : listed_.surroundings) {
+      for (ListedReadings::Cell& cell : around) cell.column = places[cell.column];
+      std::erase_if(around, [](const auto& cell) { return cell.column == kNoColumn; });
+    }
+  }
+
+  static bool has_letter(std::string_view text) {
+    return std::ranges::any_of(
+        text, [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; });
   }
 
   ListPlace where_;
