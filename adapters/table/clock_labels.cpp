@@ -46,6 +46,14 @@ std::optional<int> parse_label(std::string_view text) {
   return scan.is_done() ? number : std::nullopt;
 }
 
+std::optional<seconds> time_of_clock_cell(std::string_view text, const TableShape& shape) {
+  if (shape.clock_format == ClockFormat::time) return parse_time_of_day(text);
+  const seconds length = shape.interval > seconds{0} ? shape.interval : seconds{3600};
+  if (const auto clock = parse_clock(text); clock && !clock->is_hour) return clock->time;
+  const auto number = parse_label(text);
+  return number && *number > 0 ? std::optional{(*number - 1) * length} : std::nullopt;
+}
+
 std::optional<seconds> interval_of_labels(int labels) {
   for (const int usual : {24, 48, 96, 144, 288}) {
     if (labels == usual) return seconds{86'400 / usual};

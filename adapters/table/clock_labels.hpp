@@ -26,6 +26,11 @@ inline constexpr int kLabelsMax =
 /// Length of the intervals of which a day has this many: 24, 48, 96, 144 or 288.
 [[nodiscard]] std::optional<std::chrono::seconds> interval_of_labels(int labels);
 
+/// What a cell of a table's clock column adds to its date, as if each day had 24 hours.
+/// @return nothing: it is no time, and no number where the column counts
+[[nodiscard]] std::optional<std::chrono::seconds> time_of_clock_cell(std::string_view text,
+                                                                     const TableShape& shape);
+
 /// What the days of a table show of its clock column.
 struct ClockLabels {
   std::optional<ClockFormat> format;

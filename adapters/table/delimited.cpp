@@ -181,11 +181,11 @@ std::string_view cleaned(std::string_view cell) {
 }
 
 Split cut_line(std::string_view line, char separator, std::vector<std::string_view>& cells,
-               std::string& unquoted) {
+               std::string& unquoted, std::size_t cells_max) {
   // Contents are never longer than the line, so reserving once keeps earlier cells valid.
   unquoted.clear();
   unquoted.reserve(line.size());
-  while (cells.size() < kCellsMax) {
+  while (cells.size() < cells_max) {
     while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
     if (!line.empty() && line.front() == '"') {
       line.remove_prefix(1);
@@ -210,8 +210,10 @@ Split cut_line(std::string_view line, char separator, std::vector<std::string_vi
 /// bounds: a quote that is never closed must cost no more than its own line.
 class DelimitedRows final : public RowSource {
  public:
-  DelimitedRows(csv::ByteSource bytes, char separator)
-      : lines_{as_utf8(std::move(bytes))}, separator_{separator} {}
+  DelimitedRows(csv::ByteSource bytes, char separator, const RowLimits& limits)
+      : lines_{as_utf8(std::move(bytes)), limits.line_bytes},
+        separator_{separator},
+        limits_{limits} {}
 
   bool next(TableRow& row) override {
     csv::Line line{};
@@ -222,7 +224,7 @@ class DelimitedRows final : public RowSource {
     row.problem = {};
     if (line.too_long) {
       row.cells.clear();
-      row.problem = "longer than 64 KiB";
+      row.problem = limits_.line_bytes > csv::kLineMax ? "longer than 2 MiB" : "longer than 64 KiB";
       return true;
     }
     Split split = cut(line.text, row.cells);
@@ -250,7 +252,7 @@ class DelimitedRows final : public RowSource {
 
   Split cut(std::string_view text, std::vector<std::string_view>& cells) {
     cells.clear();
-    return cut_line(text, separator_, cells, unquoted_);
+    return cut_line(text, separator_, cells, unquoted_, limits_.cells);
   }
 
   bool next_line(csv::Line& line) {
@@ -282,7 +284,7 @@ class DelimitedRows final : public RowSource {
       joined_ += more.text;
       if (more.text.find('"') == std::string::npos) continue;
       cells.clear();
-      const Split split = cut_line(joined_, separator_, cells, unquoted);
+      const Split split = cut_line(joined_, separator_, cells, unquoted, limits_.cells);
       if (split == Split::bad) return false;
       if (split == Split::open) continue;
       is_joined_terminated_ = more.line.terminated;
@@ -294,6 +296,7 @@ class DelimitedRows final : public RowSource {
 
   csv::LineReader lines_;
   char separator_;
+  RowLimits limits_;
   std::string unquoted_;
   std::string joined_;
   std::string first_text_;
@@ -305,12 +308,13 @@ class DelimitedRows final : public RowSource {
 }  // namespace
 
 bool split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells,
-                 std::string& unquoted) {
-  return cut_line(line, separator, cells, unquoted) == Split::whole;
+                 std::string& unquoted, std::size_t cells_max) {
+  return cut_line(line, separator, cells, unquoted, cells_max) == Split::whole;
 }
 
-std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator) {
-  return std::make_unique<DelimitedRows>(std::move(bytes), separator);
+std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator,
+                                          const RowLimits& limits) {
+  return std::make_unique<DelimitedRows>(std::move(bytes), separator, limits);
 }
 
 csv::ByteSource as_utf8(csv::ByteSource bytes) {

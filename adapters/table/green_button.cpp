@@ -52,9 +52,30 @@ std::string unit_of(std::int64_t code) {
     std::string_view name;
   };
   constexpr std::array kUnits{
-      Unit{31, "J"},      Unit{38, "W"},     Unit{42, "m3"},   Unit{72, "Wh"},     Unit{119, "ft3"},
-      Unit{120, "ft3"},   Unit{122, "cf/h"}, Unit{123, "ft3"}, Unit{125, "m3/h"},  Unit{132, "BTU"},
-      Unit{133, "BTU/h"}, Unit{166, "m3"},   Unit{167, "m3"},  Unit{169, "therm"},
+      Unit{31, "J"},
+      Unit{38, "W"},
+      Unit{42, "m3"},
+      Unit{72, "Wh"},
+      Unit{119, "ft3"},
+      Unit{120, "ft3"},
+      Unit{122, "cf/h"},
+      Unit{123, "ft3"},
+      Unit{125, "m3/h"},
+      Unit{132, "BTU"},
+      Unit{133, "BTU/h"},
+      Unit{166, "m3"},
+      Unit{167, "m3"},
+      Unit{169, "therm"},
+      // No energy, named so that people know what was left out.
+      Unit{5, "A"},
+      Unit{23, "degC"},
+      Unit{29, "V"},
+      Unit{33, "Hz"},
+      Unit{61, "VA"},
+      Unit{63, "var"},
+      Unit{65, "cos phi"},
+      Unit{71, "VAh"},
+      Unit{73, "varh"},
   };
   for (const Unit& unit : kUnits) {
     if (unit.code == code) return std::string{unit.name};
@@ -85,6 +106,7 @@ struct ReadingType {
   bool is_register = false;
   bool is_reverse = false;
   std::optional<seconds> interval;
+  int tariff = 0;
 };
 
 ReadingType reading_type(const pugi::xml_node& node) {
@@ -97,6 +119,8 @@ ReadingType reading_type(const pugi::xml_node& node) {
   type.is_reverse = whole_number(text_of(node, "flowDirection")).value_or(1) == 19;
   const auto length = whole_number(text_of(node, "intervalLength")).value_or(0);
   if (length > 0 && length <= 86'400) type.interval = seconds{length};
+  const auto tariff = whole_number(text_of(node, "tou")).value_or(0);
+  if (tariff > 0 && tariff < 100) type.tariff = static_cast<int>(tariff);
   return type;
 }
 
@@ -126,6 +150,7 @@ class FeedBuilder {
       meter.is_register = type.is_register;
       meter.is_reverse = type.is_reverse;
       meter.interval = type.interval;
+      meter.tariff = type.tariff;
       const auto service = services_.find(key.substr(0, key.find("/MeterReading")));
       if (service != services_.end()) meter.utility = service->second;
       scales.push_back(std::pow(10.0, type.power_of_ten));

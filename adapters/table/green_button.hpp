@@ -23,6 +23,7 @@ struct FeedMeter {
   bool is_register = false;  ///< A cumulative register, not amounts of intervals.
   bool is_reverse = false;   ///< Energy that the building exports.
   std::optional<std::chrono::seconds> interval;
+  int tariff = 0;  ///< Time-of-use register; 0: the total.
 };
 
 struct FeedReading {

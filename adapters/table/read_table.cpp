@@ -113,45 +113,60 @@ class TableReader {
     }
     if (order_ == Order::unknown) find_order();
     hand_on_kept();
+    // A column may be in a block further down, but in one it must be.
+    for (std::size_t i = 0; i < meters_.size(); ++i) {
+      if (!is_placed_[i]) return no_column(header_, meters_[i].column);
+    }
     return {};
   }
 
   [[nodiscard]] const ClockFacts& facts() const { return facts_; }
 
  private:
-  /// The columns that are found by their names.
-  [[nodiscard]] std::vector<std::string_view> named_columns() const {
-    std::vector<std::string_view> names{shape_.time_column, shape_.clock_column,
-                                        shape_.meter_column, shape_.unit_column};
+  using Names = std::vector<std::string_view>;
+
+  /// The columns that are found by their names: those that every row needs …
+  [[nodiscard]] Names needed_columns() const {
+    Names names{shape_.time_column, shape_.clock_column, shape_.meter_column, shape_.unit_column,
+                shape_.flag_column};
+    std::erase_if(names, [](std::string_view name) { return name.empty() || numbered(name); });
+    return names;
+  }
+
+  /// … and those of values, of which some may stand in another block further down.
+  [[nodiscard]] Names value_columns() const {
+    Names names;
     for (const TableMeter& meter : meters_) names.push_back(meter.column);
     std::erase_if(names, [](std::string_view name) { return name.empty() || numbered(name); });
     return names;
   }
 
-  /// Moves to the row below the header: the first that has all the names. If columns are only
-  /// numbered, the rows above the first time are the header.
+  /// Moves to the row below the header: the first that has the names. If columns are only numbered,
+  /// the rows above the first time are the header.
   Result<void> find_header() {
     is_above_data_ = true;
-    const std::vector<std::string_view> names = named_columns();
+    const Names needed = needed_columns();
+    const Names values = value_columns();
+    Names names = needed;
+    names.insert(names.end(), values.begin(), values.end());
     if (names.empty()) return resolve({});
     TableRow row;
     std::vector<std::string> nearest;
     std::string_view missing_there = names.front();
-    std::size_t most = 0;
+    std::ptrdiff_t most = 0;
     for (std::uint64_t i = 0; i < kHeaderRowsMax && rows_.next(row); ++i) {
       std::vector<std::string> header;
       for (const std::string_view cell : row.cells) header.push_back(utf8_of(cell));
-      const auto lacks = [&](std::string_view name) { return !find_column(header, name); };
-      const auto missing = std::find_if(names.begin(), names.end(), lacks);
-      if (missing == names.end()) {
-        mark_ = *find_column(header, names.front());
+      const auto has = [&](std::string_view name) { return find_column(header, name).has_value(); };
+      const bool has_values = values.empty() || std::ranges::any_of(values, has);
+      if (has_values && std::ranges::all_of(needed, has)) {
+        marked_by_ = names.front();
         return resolve(std::move(header));
       }
-      const auto found =
-          names.size() - static_cast<std::size_t>(std::count_if(names.begin(), names.end(), lacks));
+      const auto found = std::ranges::count_if(names, has);
       if (found < most || (found == most && header.size() <= nearest.size())) continue;
       most = found;
-      missing_there = *missing;
+      missing_there = *std::ranges::find_if_not(names, has);
       nearest = std::move(header);
     }
     if (rows_.error()) return failed_source();
@@ -184,8 +199,32 @@ class TableReader {
   }
 
   Result<void> resolve(std::vector<std::string> header) {
+    is_placed_.assign(meters_.size(), false);
+    TRY(place_columns(std::move(header)));
+    next_of_name_.assign(meters_.size(), kNone);
+    is_first_of_name_.assign(meters_.size(), true);
+    for (std::size_t i = meters_.size(); i-- > 0;) {
+      const auto [known, is_new] = by_name_.try_emplace(meters_[i].rows.name, i);
+      if (is_new) continue;
+      next_of_name_[i] = std::exchange(known->second, i);
+      is_first_of_name_[next_of_name_[i]] = false;
+    }
+    for (std::size_t i = 0; i < meters_.size(); ++i) {
+      if (meters_[i].unit.empty()) continue;
+      if (auto known = intake_.set_unit(intake_.meter(i), meters_[i].unit); !known) return known;
+    }
+    const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
+    clocks_.assign(clocks, ClockReader{calendar_});
+    return {};
+  }
+
+  /// Finds the columns in the header above the rows that follow. Those of some meters may stand in
+  /// another block.
+  Result<void> place_columns(std::vector<std::string> header) {
     header_ = std::move(header);
+    mark_ = find_column(header_, marked_by_).value_or(kNone);
     const auto place = [&](std::string_view column, std::size_t& into) -> Result<void> {
+      into = kNone;
       if (column.empty()) return {};
       const auto found = find_column(header_, column);
       if (!found) return no_column(header_, column);
@@ -194,7 +233,8 @@ class TableReader {
     };
     value_.assign(meters_.size(), kNone);
     for (std::size_t i = 0; i < meters_.size(); ++i) {
-      if (auto found = place(meters_[i].column, value_[i]); !found) return found;
+      const bool is_here = place(meters_[i].column, value_[i]).has_value();
+      is_placed_[i] = is_placed_[i] || is_here;
     }
     for (const auto& [column, into] :
          {std::pair{&shape_.time_column, &time_}, std::pair{&shape_.clock_column, &clock_},
@@ -202,13 +242,6 @@ class TableReader {
           std::pair{&shape_.flag_column, &flag_}}) {
       if (auto found = place(*column, *into); !found) return found;
     }
-    for (std::size_t i = 0; i < meters_.size(); ++i) {
-      by_name_.emplace(meters_[i].rows.name, i);
-      if (meters_[i].unit.empty()) continue;
-      if (auto known = intake_.set_unit(intake_.meter(i), meters_[i].unit); !known) return known;
-    }
-    const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
-    clocks_.assign(clocks, ClockReader{calendar_});
     return {};
   }
 
@@ -221,7 +254,7 @@ class TableReader {
                     [](std::string_view cell) { return cell.empty(); })) {
       return;
     }
-    if (is_header_again(row)) return;
+    if (is_header_again(row)) return take_header_again(row);
     if (is_above_data_) {
       // Between header and data stand units or more names; with numbered columns all names do.
       if (above_ < kHeaderRowsMax && is_more_header(row)) {
@@ -331,6 +364,21 @@ class TableReader {
     return mark_ < header_.size() && cell(row, mark_) == header_[mark_];
   }
 
+  /// The header of another block, which may have other columns, or of one with none of ours.
+  void take_header_again(const TableRow& row) {
+    std::vector<std::string> header;
+    for (const std::string_view one : row.cells) header.push_back(utf8_of(one));
+    if (header == header_) return;
+    if (order_ != Order::old_to_new) {
+      find_order();
+      hand_on_kept();
+      order_ = Order::unknown;
+    }
+    is_above_data_ = true;
+    above_ = 0;
+    if (!place_columns(std::move(header))) value_.assign(meters_.size(), kNone);
+  }
+
   /// Whether a row has no time, and no number in any meter's column. Without a header, what stands
   /// above the first time is one, whatever it has.
   [[nodiscard]] bool is_more_header(const TableRow& row) const {
@@ -425,27 +473,36 @@ class TableReader {
   void read_wide(const TableRow& row) {
     const auto instant = instant_of(row, 0, nullptr);
     if (!instant) return;
-    for (std::size_t i = 0; i < meters_.size(); ++i) take(row, i, *instant);
+    for (std::size_t i = 0; i < meters_.size(); ++i) {
+      if (value_[i] != kNone) take(row, i, *instant);
+    }
   }
 
   void read_long(const TableRow& row) {
     const std::string_view name = cell(row, meter_);
     const auto index = meter_named(name);
     if (!index) return intake_.count_other(utf8_of(name));
-    csv::IntakeMeter& meter = intake_.meter(*index);
-    const auto instant = instant_of(row, *index, &meter);
+    csv::IntakeMeter& first = intake_.meter(*index);
+    const auto instant = instant_of(row, *index, &first);
     if (!instant) return;
-    if (unit_ != kNone && (meter.unit.empty() || meter.unit != cell(row, unit_))) {
-      if (const auto known = intake_.set_unit(meter, cell(row, unit_)); !known) {
-        return intake_.refuse(row.number, known.error().message, row.text, &meter);
+    // A row may have a column for each of several meters of its name.
+    for (std::size_t i = *index; i != kNone; i = next_of_name_[i]) {
+      if (value_[i] == kNone) continue;
+      csv::IntakeMeter& meter = intake_.meter(i);
+      if (unit_ != kNone && (meter.unit.empty() || meter.unit != cell(row, unit_))) {
+        if (const auto known = intake_.set_unit(meter, cell(row, unit_)); !known) {
+          intake_.refuse(row.number, known.error().message, row.text, &meter);
+          continue;
+        }
       }
+      take(row, i, *instant);
     }
-    take(row, *index, *instant);
   }
 
   [[nodiscard]] std::optional<std::size_t> meter_named(std::string_view name) {
     for (const std::size_t guess : {last_meter_ + 1, last_meter_, std::size_t{0}}) {
-      if (guess >= meters_.size() || meters_[guess].rows.name != name) continue;
+      if (guess >= meters_.size() || !is_first_of_name_[guess]) continue;
+      if (meters_[guess].rows.name != name) continue;
       last_meter_ = guess;
       return guess;
     }
@@ -535,12 +592,16 @@ class TableReader {
   std::size_t meter_ = kNone;
   std::size_t unit_ = kNone;
   std::size_t flag_ = kNone;
-  std::map<std::string, std::size_t, std::less<>> by_name_;
+  std::vector<bool> is_placed_;  ///< Whether a block had the meter's column so far.
+  std::map<std::string, std::size_t, std::less<>> by_name_;  ///< The first meter of each name.
+  std::vector<std::size_t> next_of_name_;  ///< The next meter of the same name, or none.
+  std::vector<bool> is_first_of_name_;
   std::size_t last_meter_ = 0;
   std::vector<ClockReader> clocks_;  ///< One for the table, or one per meter of a long table.
   bool is_above_data_ = false;
   std::uint64_t above_ = 0;  ///< Rows between header and data so far.
   std::uint64_t last_above_ = 0;
+  std::string marked_by_;
   std::size_t mark_ = kNone;  ///< The column whose name shows that the header comes again.
   Instant counted_date_{};
   Instant date_span_date_ = Instant::min();

@@ -14,11 +14,14 @@
 
 namespace recald::table {
 
-/// Opens the file with the container that its shape names.
+/// Opens the file with the container and the layout that its shape names, as rows of one time each.
+/// @param calendar  Of the table's clock, outlives the rows; for days with a clock change in a
+///                  table with a row a day. Null: all days have 24 hours.
 /// @return not_found, io_failed, malformed (not a workbook, no such sheet, not XML),
 ///         all with its name.
-[[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(const std::filesystem::path& file,
-                                                           const TableShape& shape);
+[[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(
+    const std::filesystem::path& file, const TableShape& shape,
+    const metering::LocalCalendar* calendar = nullptr);
 
 /// The rows of a day on which the clock changes, if they have a value that is not zero: some
 /// programs fill an hour that was never measured.
@@ -40,6 +43,7 @@ struct ClockFacts {
     if (words++ == 0) first_word = word;
   }
   std::vector<FlagCount> flags = {};  ///< Of the flag column, the first `kFlagsMax`.
+  std::vector<std::string> notes{};   ///< Of the row source.
 };
 
 /// The intake's settings for these meters.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +29,9 @@ class RowSource {
   /// @return false at the end, and when the source fails; then `error` says why.
   virtual bool next(TableRow& row) = 0;
   [[nodiscard]] virtual const std::optional<Error>& error() const = 0;
+
+  /// What readers should be told, a sentence each, once all rows have been read.
+  [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 };
 
 }  // namespace recald::table

@@ -709,6 +709,19 @@ std::ptrdiff_t signs_outside_quotes(std::string_view line, char sign) {
   return count;
 }
 
+/// "{" before a key, or "[" before an object, a list, a text or a number.
+bool begins_json(std::string_view text) {
+  const bool is_list = text.starts_with('[');
+  if (!is_list && !text.starts_with('{')) return false;
+  text.remove_prefix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) {
+    text.remove_prefix(1);
+  }
+  constexpr std::string_view kInList = "{[\"-0123456789";
+  return !text.empty() &&
+         (is_list ? kInList.find(text.front()) != std::string_view::npos : text.front() == '"');
+}
+
 }  // namespace
 
 Result<TableGuess> guess_table(std::span<const KeptRow> rows, const TableHints& hints) {
@@ -733,6 +746,7 @@ Result<Container> guess_container(std::string_view first_bytes) {
     text.remove_prefix(1);
   }
   if (text.substr(0, 1) == "<") return Container::green_button;
+  if (begins_json(text)) return Container::json;
   const auto odd = std::count_if(text.begin(), text.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return byte < 0x09 || (byte > 0x0D && byte < 0x20);
@@ -740,7 +754,8 @@ Result<Container> guess_container(std::string_view first_bytes) {
   if (odd > 0) {
     return failure(
         ErrorCode::malformed,
-        "it is no text; recald reads CSV, other delimited text, .xlsx and Green Button (XML)");
+        "it is no text; recald reads CSV, other delimited text, JSON, .xlsx and Green Button "
+        "(XML)");
   }
   return Container::text;
 }

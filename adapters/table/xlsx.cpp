@@ -19,8 +19,9 @@ using std::chrono::seconds;
 
 constexpr std::size_t kPartMax = 16u << 20;  // largest part that is read as a whole, in bytes
 constexpr std::size_t kSheetsMax = 1000;
-constexpr std::size_t kRowMax = 4u << 20;      // of one row
-constexpr std::size_t kSharedMax = 64u << 20;  // of all shared texts
+constexpr std::size_t kRowMax = 4u << 20;         // of one row
+constexpr std::size_t kSharedMax = 64u << 20;     // of all shared texts
+constexpr std::size_t kSheetColumnsMax = 16'384;  // as the format has it
 
 bool is_named(const pugi::xml_node& node, std::string_view name) {
   return local_name(node.name()) == name;
@@ -69,6 +70,7 @@ Result<void> parse_part(const Archive& archive, const std::string& entry,
 struct Sheet {
   std::string name;
   std::string entry;
+  bool is_hidden = false;
 };
 
 struct Workbook {
@@ -102,7 +104,9 @@ Result<Workbook> read_workbook(const Archive& archive) {
     if (book.sheets.size() == kSheetsMax) {
       return failure(ErrorCode::malformed, "the workbook has more than 1000 sheets");
     }
-    book.sheets.push_back({std::string{attribute(sheet, "name")}, entry->second});
+    const std::string_view state = attribute(sheet, "state");
+    book.sheets.push_back({std::string{attribute(sheet, "name")}, entry->second,
+                           state == "hidden" || state == "veryHidden"});
   }
   return book;
 }
@@ -210,7 +214,7 @@ std::optional<std::size_t> column_of(std::string_view reference) {
   for (; letters < reference.size() && reference[letters] >= 'A' && reference[letters] <= 'Z';
        ++letters) {
     column = 26 * column + static_cast<std::size_t>(reference[letters] - 'A') + 1;
-    if (column > kCellsMax) return {};
+    if (column > kSheetColumnsMax) return {};
   }
   if (letters == 0) return {};
   return column - 1;
@@ -259,7 +263,7 @@ class SheetRows final : public RowSource {
     if (!is_named(cell, "c")) return;
     const std::string_view reference = attribute(cell, "r");
     const auto column = reference.empty() ? std::optional{texts_.size()} : column_of(reference);
-    if (!column || *column >= kCellsMax || *column < texts_.size()) return;
+    if (!column || *column >= kSheetColumnsMax || *column < texts_.size()) return;
     texts_.resize(*column);  // omitted cells are blank
     texts_.push_back(text_of(cell));
   }
@@ -315,6 +319,10 @@ Result<std::vector<std::string>> sheet_names(const std::filesystem::path& file) 
   const auto book = read_workbook(archive);
   if (!book) return in_file(file, book.error());
   std::vector<std::string> names;
+  for (const Sheet& sheet : book->sheets) {
+    if (!sheet.is_hidden) names.push_back(sheet.name);
+  }
+  if (!names.empty()) return names;
   for (const Sheet& sheet : book->sheets) names.push_back(sheet.name);
   return names;
 }
@@ -324,9 +332,10 @@ Result<std::unique_ptr<RowSource>> open_sheet(const std::filesystem::path& file,
   const auto archive = TRY(Archive::open(file));
   const auto book = read_workbook(archive);
   if (!book) return in_file(file, book.error());
-  const auto found = std::find_if(book->sheets.begin(), book->sheets.end(), [&](const Sheet& one) {
-    return sheet.empty() || one.name == sheet;
+  auto found = std::find_if(book->sheets.begin(), book->sheets.end(), [&](const Sheet& one) {
+    return sheet.empty() ? !one.is_hidden : one.name == sheet;
   });
+  if (sheet.empty() && found == book->sheets.end()) found = book->sheets.begin();
   if (found == book->sheets.end()) {
     std::string names;
     for (const Sheet& one : book->sheets) names += (names.empty() ? "" : ", ") + one.name;

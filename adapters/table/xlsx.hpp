@@ -10,12 +10,12 @@
 
 namespace recald::table {
 
-/// Names of the sheets, in order.
+/// Names of the sheets, in order; those that are hidden only where all are.
 [[nodiscard]] Result<std::vector<std::string>> sheet_names(const std::filesystem::path& file);
 
-/// Reads the rows of one sheet, one at a time. Numbers keep their stored value, with a decimal
-/// point; cells formatted as dates come as "2024-03-31 14:15:00", "2024-03-31" or "14:15:00".
-/// Shared texts are held in memory, up to 64 MiB.
+/// Reads the rows of one sheet, one at a time, with up to 16 384 cells each. Numbers keep their
+/// stored value, with a decimal point; cells formatted as dates come as "2024-03-31 14:15:00",
+/// "2024-03-31" or "14:15:00". Shared texts are held in memory, up to 64 MiB.
 /// @param sheet  The name; empty: the first sheet.
 /// @return the rows, or not_found, io_failed, malformed (not a workbook; no such sheet: the message
 ///         lists the sheets).

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -24,6 +25,15 @@ std::string duration_words(std::chrono::seconds length) {
   if (length.count() % 3600 == 0) return fmt::format("{} h", length.count() / 3600);
   if (length.count() % 60 == 0) return fmt::format("{} min", length.count() / 60);
   return fmt::format("{} s", length.count());
+}
+
+/// The rows of a recorded meter in its file, or its columns: "Day + Night".
+std::string parts_words(const MeterConfig& config) {
+  const bool is_of_columns = config.table && config.table->shape.meter_column.empty();
+  std::vector<std::string> parts{is_of_columns ? config.table->column : config.name_in_file};
+  const auto& further = is_of_columns ? config.table->further_columns : config.further_names;
+  parts.insert(parts.end(), further.begin(), further.end());
+  return fmt::format("{}", fmt::join(parts, " + "));
 }
 
 void print_meters(const SiteConfig& site, const Console& console) {
@@ -56,9 +66,7 @@ void print_meters(const SiteConfig& site, const Console& console) {
     }
     console.out << fmt::format(
         "  meter {:<16} {:<14} {} ('{}', {}-stamped, interval {})\n", meter.id,
-        metering::to_string(meter.utility), files_words(config.files),
-        config.table && config.table->shape.meter_column.empty() ? config.table->column
-                                                                 : config.name_in_file,
+        metering::to_string(meter.utility), files_words(config.files), parts_words(config),
         config.stamps == csv::Stamps::end ? "end" : "start",
         config.interval ? duration_words(*config.interval) : "as in the file");
   }

@@ -56,7 +56,8 @@ bool begins_as_toml(const std::filesystem::path& file) {
 bool is_export(const std::filesystem::path& file) {
   const std::string ending = to_lower(file.extension().string());
   if (ending == ".toml") return false;
-  constexpr std::array kExportEndings{".csv", ".xlsx", ".xlsm", ".xls", ".xml", ".txt", ".tsv"};
+  constexpr std::array kExportEndings{".csv", ".xlsx", ".xlsm",   ".xls",  ".xml",
+                                      ".txt", ".tsv",  ".ndjson", ".json", ".jsonl"};
   if (std::ranges::find(kExportEndings, ending) != kExportEndings.end()) return true;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {

@@ -267,7 +267,11 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
     for (const std::string& file : table.one_or_more("file").value_or(std::vector<std::string>{})) {
       config.files.push_back(resolve(site.file, file, "file", table));
     }
-    config.name_in_file = table.text_or("name_in_file", meter.id);
+    config.further_names = table.one_or_more("name_in_file").value_or(std::vector{meter.id});
+    if (!config.further_names.empty()) {
+      config.name_in_file = config.further_names.front();
+      config.further_names.erase(config.further_names.begin());
+    }
     config.stamps = read_stamps(table);
   }
   config.interval = read_interval(table, "interval");

@@ -57,6 +57,7 @@ struct MeterConfig {
   MeterSource source = MeterSource::csv;
   std::vector<std::filesystem::path> files;  ///< source = "csv": in order of time; else empty.
   std::string name_in_file;                  ///< In the file's `meter` column.
+  std::vector<std::string> further_names;    ///< There too: rows of the same load.
   std::optional<TableConfig> table;          ///< Absent: the file is recald's own CSV.
   csv::Stamps stamps = csv::Stamps::start;
   /// Of a weather sensor that sends: instants are values at the start of their interval.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "core/text/ascii.hpp"
 
@@ -16,6 +17,16 @@ struct Separator {
   std::string_view word;
   char sign;
 };
+struct Format {
+  std::string_view word;
+  Container container;
+};
+constexpr std::array kFormats{Format{"table", Container::text},
+                              Format{"xlsx", Container::xlsx},
+                              Format{"green_button", Container::green_button},
+                              Format{"nem12", Container::nem12},
+                              Format{"influx", Container::influx},
+                              Format{"json", Container::json}};
 constexpr std::array kSeparators{Separator{",", ','}, Separator{";", ';'}, Separator{"tab", '\t'},
                                  Separator{"|", '|'}};
 
@@ -23,11 +34,14 @@ constexpr std::array kSeparators{Separator{",", ','}, Separator{";", ';'}, Separ
 Container container_of(const std::filesystem::path& file) {
   const std::string end = to_lower(file.extension().string());
   if (end == ".xlsx" || end == ".xlsm") return Container::xlsx;
+  if (end == ".json" || end == ".ndjson" || end == ".jsonl") return Container::json;
   return end == ".xml" ? Container::green_button : Container::text;
 }
 
 std::optional<std::string> read_format(TomlReader& meter) {
-  return meter.word("format", {"readings", "table", "xlsx", "green_button"});
+  std::vector<std::string_view> words{"readings"};
+  for (const Format& format : kFormats) words.push_back(format.word);
+  return meter.word("format", words);
 }
 
 void require_unit(TomlReader& meter, const TableConfig& config, metering::Utility utility,
@@ -66,13 +80,42 @@ void read_flags(TomlReader& meter, table::TableShape& shape) {
   }
 }
 
+/// One text, or the first of a list, whose others go into `further`.
+std::string first_of(TomlReader& meter, std::string_view key, std::vector<std::string>& further) {
+  auto texts = meter.one_or_more(key);
+  if (!texts) return "";
+  further.assign(std::next(texts->begin()), texts->end());
+  return std::move(texts->front());
+}
+
+void read_values(TomlReader& meter, TableConfig& config) {
+  config.column = first_of(meter, "column", config.further_columns);
+  if (config.shape.layout == table::Layout::rows) {
+    if (!meter.has("column")) (void)meter.required_text("column");
+  } else if (meter.has("column")) {
+    meter.problem_at("column",
+                     "'column' is of tables with a row for each time; where times have columns, "
+                     "leave it out");
+  } else {
+    config.column = table::kValueColumn;
+  }
+}
+
 void read_columns(TomlReader& meter, TableConfig& config) {
   table::TableShape& shape = config.shape;
-  shape.time_column = meter.required_text("time_column");
+  const std::vector<std::string_view> layouts{table::kLayouts.begin(), table::kLayouts.end()};
+  if (const auto word = meter.word("layout", layouts)) {
+    shape.layout = static_cast<table::Layout>(std::ranges::find(layouts, *word) - layouts.begin());
+  }
+  if (shape.layout != table::Layout::column_a_time) {
+    shape.time_column = meter.required_text("time_column");
+  } else {
+    shape.time_column = table::kStampColumn;
+  }
   shape.clock_column = meter.text_or("clock_column", "");
   read_clock_format(meter, shape);
-  config.column = meter.required_text("column");
-  shape.meter_column = meter.text_or("meter_column", "");
+  read_values(meter, config);
+  shape.meter_column = first_of(meter, "meter_column", shape.further_meter_columns);
   shape.unit_column = meter.text_or("unit_column", "");
   read_flags(meter, shape);
   const std::vector<std::string_view> formats{table::kTimeFormats.begin(),
@@ -102,9 +145,9 @@ void read_columns(TomlReader& meter, TableConfig& config) {
 
 bool is_table(TomlReader& meter, const std::filesystem::path& file) {
   if (const auto format = read_format(meter)) return *format != "readings";
-  constexpr std::array kKeys{"time_column", "clock_column", "time_format",
-                             "column",      "meter_column", "unit_column",
-                             "decimal",     "separator",    "flag_column"};
+  constexpr std::array kKeys{"time_column",  "clock_column", "time_format", "column",
+                             "meter_column", "unit_column",  "decimal",     "separator",
+                             "flag_column",  "layout"};
   return container_of(file) != Container::text ||
          std::ranges::any_of(kKeys, [&](const char* key) { return meter.has(key); });
 }
@@ -113,19 +156,22 @@ TableConfig read_table_config(TomlReader& meter, const std::filesystem::path& fi
                               metering::Utility utility, const metering::UnitFactors& known_units) {
   TableConfig config;
   const auto format = read_format(meter);
-  const Container container = format == "xlsx"           ? Container::xlsx
-                              : format == "green_button" ? Container::green_button
-                              : format == "table"        ? Container::text
-                                                         : container_of(file);
-  if (container == Container::green_button) {
-    config.shape = table::green_button_shape();
-    config.column = "value";
+  const auto named = std::ranges::find(kFormats, format.value_or(""), &Format::word);
+  const Container container = named != kFormats.end() ? named->container : container_of(file);
+  if (table::describes_itself(container)) {
+    config.shape = table::described_shape(container);
+    config.column = table::kValueColumn;
+    config.unit = meter.text_or("unit", "");
+    if (!config.unit.empty()) config.shape.unit_column.clear();
+    require_unit(meter, config, utility, known_units);
     return config;
   }
   read_columns(meter, config);
   config.shape.container = container;
   if (container == Container::xlsx) {
     config.shape.sheet = meter.text_or("sheet", "");
+  } else if (container == Container::json) {
+    // Its columns are keys.
   } else if (const auto word = meter.word("separator", {",", ";", "tab", "|"})) {
     config.shape.separator =
         std::ranges::find(kSeparators, std::string_view{*word}, &Separator::word)->sign;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "adapters/table/table_shape.hpp"
 #include "adapters/toml/toml_reader.hpp"
@@ -14,8 +15,9 @@ namespace recald::daemon {
 /// How the file of a recorded meter is read, unless it is recald's own CSV.
 struct TableConfig {
   table::TableShape shape;
-  std::string column;  ///< With the meter's values.
-  std::string unit;    ///< Of them; empty: the file says it in a column.
+  std::string column;                          ///< With the meter's values.
+  std::vector<std::string> further_columns{};  ///< Of the same load: phases, tariffs.
+  std::string unit;                            ///< Of them; empty: the file says it in a column.
 };
 
 /// Whether the file is such an export: by 'format', else by its keys and its name.

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "adapters/table/loads/meter_parts.hpp"
 #include "adapters/table/read_table.hpp"
 #include "core/absent.hpp"
 #include "core/metering/months/series_doubts.hpp"
@@ -74,48 +75,70 @@ class GroupReader {
  public:
   GroupReader(const SiteConfig& site, const FileGroup& group,
               const metering::LocalCalendar& calendar)
-      : group_(group), calendar_(calendar) {
-    for (const std::size_t i : group.meters) {
-      const MeterConfig& config = site.meters[i];
-      options_.meters.push_back(rows_of(config, calendar));
-      if (!config.table) continue;
-      tables_.push_back({rows_of(config, calendar), config.table->column, config.table->unit});
-    }
+      : group_(group), calendar_(calendar), parts_{meters_of(site, group, calendar)} {}
+
+  [[nodiscard]] csv::ReadingsOptions options() const {
+    return table::intake_options(parts_.parts());
   }
+  [[nodiscard]] table::MeterParts& parts() { return parts_; }
 
-  [[nodiscard]] const csv::ReadingsOptions& options() const { return options_; }
-
-  Result<void> read(const std::filesystem::path& file, csv::ReadingIntake& intake) const {
-    if (!group_.shape) return csv::read_readings(file, options_, intake);
-    return table::read_table(file, *group_.shape, tables_, calendar_, intake);
+  /// @param notes  What the file's container says about its readings.
+  Result<void> read(const std::filesystem::path& file, csv::ReadingIntake& intake,
+                    std::vector<std::string>& notes) const {
+    if (!group_.shape) return csv::read_readings(file, options(), intake);
+    table::ClockFacts facts;
+    TRY(table::read_table(file, *group_.shape, parts_.parts(), calendar_, intake, &facts));
+    for (const std::string& note : facts.notes) {
+      notes.push_back(fmt::format("{}: {}.", file.filename().string(), note));
+    }
+    return {};
   }
 
  private:
+  static std::vector<table::TableMeter> meters_of(const SiteConfig& site, const FileGroup& group,
+                                                  const metering::LocalCalendar& calendar) {
+    std::vector<table::TableMeter> meters;
+    for (const std::size_t i : group.meters) {
+      const MeterConfig& config = site.meters[i];
+      table::TableMeter meter{.rows = rows_of(config, calendar),
+                              .column = {},
+                              .unit = {},
+                              .further_names = config.further_names};
+      if (config.table) {
+        meter.column = config.table->column;
+        meter.unit = config.table->unit;
+        meter.further_columns = config.table->further_columns;
+      }
+      meters.push_back(std::move(meter));
+    }
+    return meters;
+  }
+
   const FileGroup& group_;
   const metering::LocalCalendar& calendar_;
-  csv::ReadingsOptions options_;
-  std::vector<table::TableMeter> tables_;
+  table::MeterParts parts_;
 };
 
 /// @param recording  Receives the notes and issues of the files.
 Result<void> read_group(const SiteConfig& site, const FileGroup& group,
                         const metering::LocalCalendar& calendar, const csv::ReadingsSink& sink,
                         Recording& recording) {
-  const GroupReader reader{site, group, calendar};
-  OverlapMerge merge{group.meters.size(), sink};
-  csv::ReadingsSink merged = sink;
+  GroupReader reader{site, group, calendar};
+  const csv::ReadingsSink of_parts = reader.parts().sink(sink);
+  OverlapMerge merge{reader.parts().parts().size(), of_parts};
+  csv::ReadingsSink merged = of_parts;
   const bool may_overlap = group.files.size() > 1;
   if (may_overlap) {
     merged.on_reading = [&](const metering::Reading& reading) { merge.take(reading); };
   }
   csv::ReadingIntake intake{reader.options(), merged};
   for (const std::filesystem::path& file : group.files) {
-    if (auto read = reader.read(file, intake); !read) return read;
+    TRY(reader.read(file, intake, recording.notes));
     auto issues = TRY(intake.end_file(file.string()));
     merge.end_file();
     recording.files.push_back({file, std::move(issues.issues), std::move(issues.others)});
   }
-  csv::ReadingsReport report = intake.finish();
+  csv::ReadingsReport of_intake = intake.finish();
   merge.finish();
   if (merge.corrected() > 0) {
     recording.notes.push_back(fmt::format(
@@ -123,6 +146,7 @@ Result<void> read_group(const SiteConfig& site, const FileGroup& group,
         "counts; the order of the files in the site file decides which is later.",
         files_words(group.files), merge.repeated(), merge.corrected()));
   }
+  csv::ReadingsReport report = TRY(reader.parts().finish(std::move(of_intake)));
   recording.files.back().issues.append(std::move(report.issues));
   recording.readings += report.readings;
   for (std::size_t k = 0; k < group.meters.size(); ++k) {

@@ -14,12 +14,19 @@
 #include "adapters/table/cells/cell_number.hpp"
 #include "adapters/table/cells/words.hpp"
 #include "adapters/table/clock_labels.hpp"
+#include "adapters/table/containers/influx_csv.hpp"
+#include "adapters/table/containers/nem12.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/green_button.hpp"
+#include "adapters/table/layouts/layout_rows.hpp"
+#include "adapters/table/loads/meter_parts.hpp"
+#include "adapters/table/loads/named_rows.hpp"
+#include "adapters/table/loads/rows_apart.hpp"
 #include "adapters/table/read_table.hpp"
-#include "adapters/table/xlsx.hpp"
 #include "core/text/ascii.hpp"
 #include "daemon/site/setup/clock_evidence.hpp"
+#include "daemon/site/setup/file_guess.hpp"
+#include "daemon/site/setup/load_parts.hpp"
 #include "daemon/site/setup/utility_guess.hpp"
 
 namespace recald::daemon {
@@ -30,7 +37,6 @@ using std::chrono::seconds;
 using table::Container;
 
 constexpr std::size_t kFirstBytes = 4096;
-constexpr std::size_t kSeparatorLines = 60;
 constexpr std::size_t kMetersMax = 500;
 constexpr double kTypicalGas_kWh_per_m3 = 10.55;
 constexpr int kFrozenIntervals =
@@ -52,78 +58,10 @@ Result<std::string> first_bytes(const std::filesystem::path& file) {
   return begin;
 }
 
-Result<std::vector<std::string>> first_lines(const std::filesystem::path& file) {
-  auto bytes = TRY(csv::open_file(file, "export"));
-  csv::LineReader reader{table::as_utf8(std::move(bytes))};
-  std::vector<std::string> lines;
-  for (csv::Line line{}; lines.size() < kSeparatorLines && reader.next(line);) {
-    lines.emplace_back(line.text);
-  }
-  if (reader.error()) return tl::unexpected(*reader.error());
-  return lines;
-}
-
 bool is_own(const std::vector<std::string>& lines) {
   const auto header = std::ranges::find_if(
       lines, [](const std::string& line) { return !line.empty() && line.front() != '#'; });
   return header != lines.end() && header->starts_with(kOwnHeader);
-}
-
-Result<std::vector<table::KeptRow>> head_of(const std::filesystem::path& file,
-                                            const table::TableShape& shape) {
-  const auto rows = TRY(table::open_rows(file, shape));
-  std::vector<table::KeptRow> kept;
-  for (table::TableRow row; kept.size() < table::kSniffedRows && rows->next(row);) {
-    kept.push_back({row.number, {}});
-    for (const std::string_view cell : row.cells) {
-      kept.back().cells.push_back(table::utf8_of(cell));
-    }
-  }
-  if (rows->error()) return tl::unexpected(*rows->error());
-  return kept;
-}
-
-Result<table::TableGuess> guess_text(const std::filesystem::path& file,
-                                     const std::vector<std::string>& lines,
-                                     const table::TableHints& hints) {
-  const char likely = table::guess_separator(lines);
-  std::optional<Error> first;
-  for (const char separator : {likely, ';', '\t', ',', '|'}) {
-    if (first && separator == likely) continue;
-    table::TableShape shape;
-    shape.separator = separator;
-    const auto head = TRY(head_of(file, shape));
-    auto guess = table::guess_table(head, hints);
-    if (guess) {
-      guess->shape.separator = separator;
-      return guess;
-    }
-    if (!first) first = guess.error();
-  }
-  return tl::unexpected(*first);
-}
-
-/// The first sheet that has a table.
-Result<table::TableGuess> guess_workbook(const std::filesystem::path& file,
-                                         const table::TableHints& hints) {
-  const auto names = TRY(table::sheet_names(file));
-  std::optional<Error> first;
-  for (const std::string& name : names) {
-    if (!hints.sheet.empty() && name != hints.sheet) continue;
-    const auto head = TRY(head_of(file, {.container = Container::xlsx, .sheet = name}));
-    auto guess = table::guess_table(head, hints);
-    if (guess) {
-      guess->shape.container = Container::xlsx;
-      guess->shape.sheet = name;
-      return guess;
-    }
-    if (!first) first = guess.error();
-  }
-  const std::string missing =
-      hints.sheet.empty()
-          ? "it has no sheet"
-          : fmt::format("it has no sheet '{}'; it has '{}'", hints.sheet, fmt::join(names, "', '"));
-  return tl::unexpected(first.value_or(Error{ErrorCode::malformed, missing}));
 }
 
 /// A unit that nothing says is asked for once its values are known; kWh shows them as they are.
@@ -147,6 +85,29 @@ SurveyedMeter described(std::string name, std::string name_in_file, std::string 
   return meter;
 }
 
+/// Of the numbers of a statistic one is the load: the mean, not the least and the most; the total,
+/// not what a device shows.
+void keep_the_load(table::TableGuess& guess) {
+  const auto find = [&](std::string_view name) {
+    return std::ranges::find_if(
+        guess.values, [&](const table::GuessedColumn& one) { return to_lower(one.name) == name; });
+  };
+  const auto end = guess.values.end();
+  auto load = end;
+  if (find("min") != end || find("max") != end) load = find("mean");
+  if (find("sum") != end && find("state") != end) load = find("sum");
+  if (load == end) return;
+  const table::GuessedColumn kept = *load;
+  constexpr std::array<std::string_view, 6> kStatistics{"min", "max",   "mean",
+                                                        "sum", "state", "change"};
+  std::erase_if(guess.values, [&](const table::GuessedColumn& one) {
+    const bool is_other = one.column != kept.column &&
+                          std::ranges::find(kStatistics, to_lower(one.name)) != kStatistics.end();
+    if (is_other) guess.ignored.push_back(fmt::format("{} (beside {})", one.column, kept.column));
+    return is_other;
+  });
+}
+
 std::vector<SurveyedMeter> meters_of_columns(const table::TableGuess& guess,
                                              const std::string& file_stem) {
   std::vector<SurveyedMeter> meters;
@@ -166,7 +127,7 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
   std::vector<SurveyedMeter> meters;
   std::map<std::string, std::size_t, std::less<>> known;
   std::vector<std::string> header;
-  const table::GuessedColumn& value = guess.values.front();
+  const std::vector<table::GuessedColumn>& values = guess.values;
   std::optional<std::size_t> meter_at;
   std::optional<std::size_t> unit_at;
   std::optional<std::size_t> time_at;
@@ -192,20 +153,56 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
     const std::string text = table::utf8_of(name);
     known.emplace(std::string{name}, meters.size());
     const bool has_unit = unit_at && *unit_at < row.cells.size();
-    if (has_unit) {
-      meters.push_back(described(text, text, value.column, table::utf8_of(row.cells[*unit_at]),
-                                 "as its rows say"));
-      continue;
+    for (const table::GuessedColumn& value : values) {
+      const std::string called = values.size() == 1 ? text : text + " " + value.name;
+      if (has_unit) {
+        meters.push_back(described(called, text, value.column, table::utf8_of(row.cells[*unit_at]),
+                                   "as its rows say"));
+        continue;
+      }
+      // "sensor.main_energy_kwh"
+      std::string in_name = value.unit.empty() ? table::split_unit(text).unit : "";
+      const bool is_in_name = !in_name.empty();
+      meters.push_back(described(called, text, value.column,
+                                 is_in_name ? std::move(in_name) : value.unit,
+                                 is_in_name ? "as its name says" : value.unit_because));
     }
-    // "sensor.main_energy_kwh"
-    std::string in_name = value.unit.empty() ? table::split_unit(text).unit : "";
-    const bool is_in_name = !in_name.empty();
-    meters.push_back(described(text, text, value.column,
-                               is_in_name ? std::move(in_name) : value.unit,
-                               is_in_name ? "as its name says" : value.unit_because));
   }
   if (rows->error()) return tl::unexpected(*rows->error());
   return meters;
+}
+
+/// "UsagePoint/1" of one of its meter readings.
+std::string_view usage_point(std::string_view name) {
+  return name.substr(0, name.find("/MeterReading"));
+}
+
+bool is_of_one_load(const table::FeedMeter& a, const table::FeedMeter& b) {
+  return usage_point(a.name) == usage_point(b.name) && a.unit == b.unit &&
+         a.is_register == b.is_register && a.is_reverse == b.is_reverse;
+}
+
+/// Registers of tariffs are parts of the first of them, or of the total where the feed has it.
+void join_tariff(std::span<const table::FeedMeter> feed, const table::FeedMeter& in_feed,
+                 SurveyedMeter& meter, std::vector<SurveyedMeter>& meters) {
+  const auto is_sibling = [&](const table::FeedMeter& other) {
+    return &other != &in_feed && is_of_one_load(other, in_feed);
+  };
+  if (in_feed.tariff != 0) {
+    const bool has_total = std::ranges::any_of(feed, [&](const table::FeedMeter& other) {
+      return is_sibling(other) && other.tariff == 0;
+    });
+    if (has_total) return;
+    for (SurveyedMeter& known : meters) {
+      const auto first = std::ranges::find(feed, known.name_in_file, &table::FeedMeter::name);
+      if (first == feed.end() || first->tariff == 0 || first->tariff == in_feed.tariff) continue;
+      if (!is_sibling(*first)) continue;
+      known.further_names.push_back(in_feed.name);
+      known.parts_because = "registers of tariffs, as the feed says, added up";
+      return;
+    }
+  }
+  meters.push_back(std::move(meter));
 }
 
 Result<std::vector<SurveyedMeter>> meters_of_feed(const std::filesystem::path& file) {
@@ -223,7 +220,7 @@ Result<std::vector<SurveyedMeter>> meters_of_feed(const std::filesystem::path& f
                                   !metering::find_unit(in_feed.unit, *in_feed.utility, {});
     }
     meter.is_register = in_feed.is_register;
-    meters.push_back(std::move(meter));
+    join_tariff(feed.meters, in_feed, meter, meters);
   }
   return meters;
 }
@@ -298,16 +295,19 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
     }
     if (meter.interval > seconds{0}) rows.interval = meter.interval;
     const bool is_said = survey.table && survey.table->shape.unit_column.empty();
-    meters.push_back({std::move(rows), meter.column, is_said ? unit_read(meter) : ""});
+    meters.push_back({std::move(rows), meter.column, is_said ? unit_read(meter) : "",
+                      meter.further_names, meter.further_columns});
   }
-  csv::ReadingsOptions options = table::intake_options(meters);
+  table::MeterParts parts{meters};
+  const csv::ReadingsSink of_parts = parts.sink(sink);
+  csv::ReadingsOptions options = table::intake_options(parts.parts());
   options.finds_tolerance = true;
-  csv::ReadingIntake intake{options, sink};
+  csv::ReadingIntake intake{options, of_parts};
   const std::filesystem::path& file = survey.files.front();
-  TRY(survey.table
-          ? table::read_table(file, survey.table->shape, meters, calendar, intake, &whole.clock)
-          : csv::read_readings(file, options, intake));
-  whole.report = intake.finish();
+  TRY(survey.table ? table::read_table(file, survey.table->shape, parts.parts(), calendar, intake,
+                                       &whole.clock)
+                   : csv::read_readings(file, options, intake));
+  whole.report = TRY(parts.finish(intake.finish()));
   return whole;
 }
 
@@ -316,7 +316,7 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
 bool learn_flags(SurveyedExport& survey, const WholeFile& whole) {
   if (!survey.table || survey.table->shape.flag_column.empty()) return false;
   table::TableShape& shape = survey.table->shape;
-  if (shape.container == Container::green_button) return false;
+  if (table::describes_itself(shape.container)) return false;
   const table::FlagMeanings meanings = table::meanings_of(whole.clock.flags);
   const auto words_of = [](const table::FlagCount& flag) {
     return fmt::format("{} ({} rows{})", csv::in_quotes(flag.flag), flag.rows,
@@ -368,10 +368,10 @@ bool learn_from_rows(SurveyedExport& survey, const metering::LocalCalendar& cale
     if (was_read && csv::is_interval(longest)) {
       meter.interval = longest;
       is_new = true;
-    } else if (!whole.watches[i].is_rate && !meter.is_register) {
+    } else if (!whole.watches[i].is_rate && !meter.as_register.is_register) {
       meter.as_register = whole.watches[i].as_register.verdict(calendar);
-      meter.is_register = meter.as_register.is_register;
-      is_new = is_new || meter.is_register;
+      meter.is_register = meter.is_register || meter.as_register.is_register;
+      is_new = is_new || meter.as_register.is_register;
     }
   }
   return is_new;
@@ -461,6 +461,14 @@ Guess<csv::Stamps> guess_stamps(const SurveyedExport& survey, const metering::Ti
   if (!survey.table) return {csv::Stamps::start, "as recald's own files have it unless told"};
   if (survey.table->shape.container == Container::green_button) {
     return {csv::Stamps::start, "as Green Button feeds have it"};
+  }
+  if (survey.table->shape.container == Container::nem12) {
+    return {csv::Stamps::start, "as NEM12 counts its intervals"};
+  }
+  const table::TableShape& shape = survey.table->shape;
+  if (shape.layout == table::Layout::row_a_day ||
+      (shape.layout == table::Layout::column_a_time && !shape.clock_column.empty())) {
+    return {csv::Stamps::start, "as its times run through whole days"};
   }
   if (survey.table->stamps) return {*survey.table->stamps, survey.table->stamps_because};
   const auto minute = [&](Instant t) { return calendar.local_time(t).minute_of_day; };
@@ -556,7 +564,10 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
         metering::find_unit(report.shown.unit, meter.utility.value, factors_of(meter));
     const bool is_rate = unit && unit->is_rate;
     const bool was_read_as_register = meter.is_register && meter.as_register.is_register;
-    meter.as_register = watch.as_register.verdict(calendar);
+    const bool has_parts = !meter.further_names.empty() || !meter.further_columns.empty();
+    if (!was_read_as_register || !has_parts) {
+      meter.as_register = watch.as_register.verdict(calendar);
+    }
     meter.is_register = !is_rate && (meter.is_register || meter.as_register.is_register);
     meter.grid_tolerance = tolerance_for(report.beside_max);
     meter.is_of_other_steps = report.steps.size() != 1 || report.steps[0].step != meter.interval;
@@ -667,6 +678,102 @@ Result<std::vector<SurveyedMeter>> meters_of_own(const std::filesystem::path& fi
   return meters_of_rows(file, as_table);
 }
 
+/// Text that says itself what its readings are.
+Container container_in_text(const std::vector<std::string>& lines) {
+  const auto first = std::ranges::find_if(
+      lines, [](const std::string& line) { return !csv::trimmed(line).empty(); });
+  if (first != lines.end() && table::is_nem12(*first)) return Container::nem12;
+  return table::is_influx_csv(lines) ? Container::influx : Container::text;
+}
+
+/// Channels in units that are no energy, as reactive power is, beside others that are.
+void leave_out_other_quantities(SurveyedExport& survey) {
+  const auto is_other = [](const SurveyedMeter& meter) {
+    const auto unit = metering::find_unit(meter.unit.value, meter.utility.value, factors_of(meter));
+    return !unit && unit.error().code == ErrorCode::invalid_value;
+  };
+  if (std::ranges::all_of(survey.meters, is_other)) return;
+  std::vector<std::string> words;
+  for (const SurveyedMeter& meter : survey.meters) {
+    if (is_other(meter)) words.push_back(fmt::format("{} ({})", meter.name, meter.unit.value));
+  }
+  if (words.empty()) return;
+  std::erase_if(survey.meters, is_other);
+  survey.notes.push_back(fmt::format("{}: not energy, and left out: {}.",
+                                     survey.files.front().filename().string(),
+                                     fmt::join(words, ", ")));
+}
+
+/// Series without a unit, beside others that have one, are temperatures, switches and the like.
+void leave_out_without_unit(SurveyedExport& survey) {
+  const auto has_none = [](const SurveyedMeter& meter) {
+    return meter.unit.because.starts_with("guessed");
+  };
+  if (std::ranges::all_of(survey.meters, has_none)) {
+    survey.table->shape.unit_column.clear();
+    return;
+  }
+  std::vector<std::string> words;
+  for (const SurveyedMeter& meter : survey.meters) {
+    if (has_none(meter)) words.push_back(meter.name_in_file);
+  }
+  if (words.empty()) return;
+  std::erase_if(survey.meters, has_none);
+  survey.notes.push_back(fmt::format("{}: series without a unit of energy are left out: {}.",
+                                     survey.files.front().filename().string(),
+                                     fmt::join(words, ", ")));
+}
+
+/// Names of series without what all have in common, and without their units.
+void shorten_names(std::vector<SurveyedMeter>& meters) {
+  std::map<std::string, std::size_t> in_meters;
+  const auto parts_of_name = [](const std::string& name) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at <= name.size();) {
+      const std::size_t end = std::min(name.find(table::kNamesApart, at), name.size());
+      parts.push_back(name.substr(at, end - at));
+      at = end + table::kNamesApart.size();
+    }
+    return parts;
+  };
+  for (const SurveyedMeter& meter : meters) {
+    for (const std::string& part : parts_of_name(meter.name)) ++in_meters[part];
+  }
+  for (SurveyedMeter& meter : meters) {
+    std::string name;
+    for (const std::string& part : parts_of_name(meter.name)) {
+      const bool is_of_all = meters.size() > 1 && in_meters[part] == meters.size();
+      if (is_of_all || table::is_unit(part) || part == "value" || part == "_value") continue;
+      name += (name.empty() ? "" : " ") + part;
+    }
+    if (!name.empty()) meter.name = std::move(name);
+  }
+}
+
+/// NEM12 and annotated CSV: meters and units are found by reading it once.
+Result<SurveyedExport> export_with_description(const std::filesystem::path& file,
+                                               Container container) {
+  SurveyedExport survey{.files = {file}};
+  survey.table.emplace();
+  survey.table->shape = table::described_shape(container);
+  survey.table->has_offsets = true;
+  survey.table->values.push_back({"value", "value", ""});
+  survey.meters = TRY(meters_of_rows(file, *survey.table));
+  if (container == Container::influx) {
+    leave_out_without_unit(survey);
+    shorten_names(survey.meters);
+    return survey;
+  }
+  for (SurveyedMeter& meter : survey.meters) {
+    meter.utility = {metering::Utility::electricity, "as NEM12 is"};
+  }
+  survey.notes.push_back(
+      fmt::format("{}: its times are the market's, UTC+10 all year (Etc/GMT-10), as NEM12 has them "
+                  "wherever the meter is; channels B are what the building feeds in.",
+                  file.filename().string()));
+  return survey;
+}
+
 /// The only meter of a long table, if its rows name it by a number, is called as its values are.
 void name_by_values(const table::TableGuess& guess, std::vector<SurveyedMeter>& meters) {
   if (meters.size() != 1 || guess.values.front().name.empty()) return;
@@ -715,18 +822,28 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file,
     auto meters = meters_of_feed(file);
     if (!meters) return about(file, meters.error());
     survey.meters = std::move(*meters);
+    leave_out_other_quantities(survey);
     return survey;
   }
-  const auto lines = TRY(first_lines(file));
-  if (*container == Container::text && is_own(lines)) {
+  std::vector<std::string> lines;
+  if (*container == Container::text) lines = TRY(first_lines(file));
+  const Container inside = *container == Container::text ? container_in_text(lines) : *container;
+  if (table::describes_itself(inside)) {
+    auto described = export_with_description(file, inside);
+    return described ? described : about(file, described.error());
+  }
+  if (inside == Container::text && is_own(lines)) {
     auto meters = meters_of_own(file);
     if (!meters) return about(file, meters.error());
     survey.meters = std::move(*meters);
     return survey;
   }
-  auto guess = *container == Container::xlsx ? guess_workbook(file, hints.table)
-                                             : guess_text(file, lines, hints.table);
-  if (!guess) return about(file, guess.error());
+  auto guessed = guess_file(file, inside, lines, hints.table);
+  if (!guessed) return about(file, guessed.error());
+  table::TableGuess* const guess = &guessed->table;
+  survey.layout_because = guessed->layout_because;
+  survey.notes = std::move(guessed->notes);
+  if (hints.table.columns.empty()) keep_the_load(*guess);
   if (guess->shape.meter_column.empty()) {
     survey.meters = meters_of_columns(*guess, file.stem().string());
   } else {
@@ -759,8 +876,86 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file,
   for (const std::string& note : guess->notes) {
     survey.notes.push_back(fmt::format("{}: {}", file.filename().string(), note));
   }
+  leave_out_other_quantities(survey);
   survey.table = std::move(*guess);
   return survey;
+}
+
+/// Rows that have the time of another row, or one before it.
+std::uint64_t out_of_order(const WholeFile& whole) {
+  std::uint64_t rows = 0;
+  for (const csv::MeterReport& meter : whole.report.meters) {
+    rows += meter.unsorted + meter.duplicates;
+  }
+  return rows;
+}
+
+/// Reads the file anew with meters that its rows are told apart by. What does not read better is
+/// left as it was.
+Result<bool> try_apart(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                       WholeFile& whole, SurveyedExport changed) {
+  if (changed.meters.empty()) return false;
+  auto again = TRY(read_whole(changed, calendar));
+  if (again.report.readings == 0 || 2 * out_of_order(again) > out_of_order(whole)) return false;
+  survey = std::move(changed);
+  whole = std::move(again);
+  return true;
+}
+
+/// Where times come twice or start again, other columns say of what the rows are: a register, a
+/// meter, the header or the title of another block.
+Result<void> tell_rows_apart(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                             WholeFile& whole) {
+  constexpr std::uint64_t kFew = 200;  // one row in so many may be wrong
+  const table::TableShape& shape = survey.table->shape;
+  const std::filesystem::path& file = survey.files.front();
+  if (table::describes_itself(shape.container)) return {};
+  if (out_of_order(whole) * kFew <= whole.report.readings) return {};
+  const auto further = TRY(columns_of_further_blocks(file, shape));
+  if (!further.empty() && shape.meter_column.empty()) {
+    SurveyedExport changed = survey;
+    auto& values = changed.table->values;
+    values.insert(values.end(), further.begin(), further.end());
+    changed.meters = meters_of_columns(*changed.table, file.stem().string());
+    const bool is_told = TRY(try_apart(survey, calendar, whole, std::move(changed)));
+    if (is_told) return {};
+  }
+  table::TableShape titled = shape;
+  titled.further_meter_columns.clear();
+  titled.meter_column = table::kTitleColumn;
+  // Of several columns of numbers, one may have the numbers of meters.
+  std::vector<std::string> values;
+  if (survey.table->values.size() == 1) values.push_back(survey.table->values.front().column);
+  const auto found =
+      TRY(table::columns_that_tell_apart([&] { return table::open_rows(file, titled, &calendar); },
+                                         table::shape_of_rows(titled), values));
+  if (!found) return {};
+  SurveyedExport changed = survey;
+  table::TableShape& apart = changed.table->shape;
+  apart.meter_column = found->columns.front();
+  apart.further_meter_columns.assign(std::next(found->columns.begin()), found->columns.end());
+  std::erase_if(changed.table->values, [&](const table::GuessedColumn& value) {
+    return std::ranges::find(found->columns, value.column) != found->columns.end() ||
+           std::ranges::find(found->alike, value.column) != found->alike.end();
+  });
+  if (changed.table->values.empty()) return {};
+  changed.meters = TRY(meters_of_rows(file, *changed.table));
+  changed.notes.push_back(
+      fmt::format("{}: times come more than once; {} {} apart what the rows are of ({} names).",
+                  file.filename().string(), fmt::join(found->columns, ", "),
+                  found->columns.size() == 1 ? "tells" : "tell", found->groups));
+  TRY(try_apart(survey, calendar, whole, std::move(changed)));
+  return {};
+}
+
+/// Meters that are parts of one load become one; what it is like shows when it is read again.
+Result<void> take_loads(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
+  const std::vector<FoundLoad> loads = find_loads(survey.meters);
+  if (loads.empty()) return {};
+  join_loads(loads, survey.meters);
+  const auto whole = TRY(read_whole(survey, calendar));
+  take_results(survey, whole, calendar);
+  return {};
 }
 
 bool is_without_zone(const SurveyedExport& survey) {
@@ -801,6 +996,11 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   if (auto found = find_clock_format(*survey, *clock); !found) return about(file, found.error());
   auto whole = read_whole(*survey, *clock);
   if (!whole) return about(file, whole.error());
+  if (survey->table) {
+    if (auto told = tell_rows_apart(*survey, *clock, *whole); !told) {
+      return about(file, told.error());
+    }
+  }
   const bool has_flags = learn_flags(*survey, *whole);
   if (learn_from_rows(*survey, *clock, *whole) || has_flags) {
     whole = read_whole(*survey, *clock);
@@ -812,7 +1012,11 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
     }
   }
   TRY(require_sound(*survey, *whole));
+  for (const std::string& note : whole->clock.notes) {
+    survey->notes.push_back(fmt::format("{}: {}.", file.filename().string(), note));
+  }
   take_results(*survey, *whole, *clock);
+  TRY(take_loads(*survey, *clock));
   if (hints.stamps) {
     for (SurveyedMeter& meter : survey->meters) {
       meter.stamps = Guess<csv::Stamps>{*hints.stamps, "as told"};

@@ -28,6 +28,9 @@ struct SurveyedMeter {
   std::string name;          ///< As people call it.
   std::string name_in_file;  ///< In the meter column of a long table; else empty.
   std::string column;
+  std::vector<std::string> further_names{};    ///< Rows of the same load.
+  std::vector<std::string> further_columns{};  ///< Columns of the same load.
+  std::string parts_because;                   ///< Why these are one load.
   Guess<std::string> unit;
   Guess<metering::Utility> utility;
   Guess<csv::Stamps> stamps{csv::Stamps::start, ""};
@@ -54,7 +57,8 @@ struct SurveyedExport {
   std::vector<SurveyedMeter> meters;
   std::vector<std::string> notes;       ///< A sentence each: what is undecided, or left out.
   std::vector<OpenQuestion> questions;  ///< What has to be known before it can be read.
-  std::string clock_because;  ///< Why the table has a zone of its own; empty: it has none.
+  std::string clock_because;   ///< Why the table has a zone of its own; empty: it has none.
+  std::string layout_because;  ///< Why its times are taken to run that way.
   std::optional<std::chrono::seconds> told_interval;  ///< Of its values, if somebody said so.
   std::string clock_format_because;                   ///< Of a clock column that counts.
   std::optional<std::chrono::seconds> utc_offset;     ///< Of its first stamp, if stamps say theirs.

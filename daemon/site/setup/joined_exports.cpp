@@ -17,6 +17,7 @@ bool is_guessed(const Guess<csv::Stamps>& stamps) { return stamps.because.starts
 
 bool is_same_meter(const SurveyedMeter& a, const SurveyedMeter& b) {
   return a.name == b.name && a.name_in_file == b.name_in_file && a.column == b.column &&
+         a.further_names == b.further_names && a.further_columns == b.further_columns &&
          a.unit.value == b.unit.value && a.utility.value == b.utility.value &&
          a.interval == b.interval && a.is_register == b.is_register &&
          (a.stamps.value == b.stamps.value || is_guessed(a.stamps) || is_guessed(b.stamps));

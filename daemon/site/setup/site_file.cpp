@@ -153,22 +153,62 @@ std::string list_text(const std::vector<std::string>& texts) {
   return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
+/// A text, or a list of them.
+std::string one_or_list(const std::string& first, const std::vector<std::string>& further) {
+  if (further.empty()) return toml_text(first);
+  std::vector<std::string> texts{toml_text(first)};
+  for (const std::string& one : further) texts.push_back(toml_text(one));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string_view format_word(table::Container container) {
+  switch (container) {
+    case table::Container::xlsx:
+      return "xlsx";
+    case table::Container::green_button:
+      return "green_button";
+    case table::Container::nem12:
+      return "nem12";
+    case table::Container::influx:
+      return "influx";
+    case table::Container::json:
+      return "json";
+    case table::Container::text:
+      break;
+  }
+  return "table";
+}
+
+void write_names(const SurveyedMeter& meter, Lines& lines) {
+  lines.key("name_in_file", one_or_list(meter.name_in_file, meter.further_names),
+            meter.further_names.empty() ? "" : meter.parts_because);
+}
+
+void write_times(const SurveyedExport& one, const table::TableShape& shape, Lines& lines) {
+  if (shape.layout != table::Layout::rows) {
+    lines.key("layout", toml_text(table::to_string(shape.layout)), one.layout_because);
+  }
+  if (shape.layout == table::Layout::column_a_time) return;
+  lines.key("time_column", toml_text(shape.time_column));
+}
+
 void write_shape(const SurveyedExport& one, const SurveyedMeter& meter, Lines& lines) {
   const table::TableGuess& guess = *one.table;
   const table::TableShape& shape = guess.shape;
-  if (shape.container == table::Container::green_button) {
-    lines.key("format", "\"green_button\"");
-    lines.key("name_in_file", toml_text(meter.name_in_file));
+  lines.key("format", toml_text(format_word(shape.container)));
+  if (table::describes_itself(shape.container)) {
+    write_names(meter, lines);
+    if (shape.unit_column.empty()) {
+      lines.key("unit", toml_text(meter.unit.value), meter.unit.because);
+    }
     return;
   }
   if (shape.container == table::Container::xlsx) {
-    lines.key("format", "\"xlsx\"");
     lines.key("sheet", toml_text(shape.sheet));
-  } else {
-    lines.key("format", "\"table\"");
+  } else if (shape.container == table::Container::text) {
     lines.key("separator", toml_text(separator_word(shape.separator)));
   }
-  lines.key("time_column", toml_text(shape.time_column));
+  write_times(one, shape, lines);
   if (!shape.clock_column.empty()) lines.key("clock_column", toml_text(shape.clock_column));
   if (shape.clock_format != table::ClockFormat::time) {
     lines.key("clock_format", toml_text(table::to_string(shape.clock_format)),
@@ -179,10 +219,13 @@ void write_shape(const SurveyedExport& one, const SurveyedMeter& meter, Lines& l
   if (!shape.timezone.empty()) lines.key("timezone", toml_text(shape.timezone), one.clock_because);
   lines.key("decimal", toml_text(std::string{shape.decimal}), guess.decimal_because);
   if (!shape.meter_column.empty()) {
-    lines.key("meter_column", toml_text(shape.meter_column));
-    lines.key("name_in_file", toml_text(meter.name_in_file));
+    lines.key("meter_column", one_or_list(shape.meter_column, shape.further_meter_columns));
+    write_names(meter, lines);
   }
-  lines.key("column", toml_text(meter.column));
+  if (shape.layout == table::Layout::rows) {
+    lines.key("column", one_or_list(meter.column, meter.further_columns),
+              meter.further_columns.empty() ? "" : meter.parts_because);
+  }
   if (!shape.unit_column.empty()) {
     lines.key("unit_column", toml_text(shape.unit_column));
   } else {
