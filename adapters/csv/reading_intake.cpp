@@ -1,6 +1,7 @@
 #include "adapters/csv/reading_intake.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -411,6 +412,10 @@ void ReadingIntake::check_order(IntakeMeter& meter, const Row& row, Instant star
   const std::string name = "meter " + in_quotes(meter.report.shown.name) + ": ";
   if (start == start_of(meter, *meter.last)) {
     ++meter.report.duplicates;
+    const Reading value = reading_of(meter, row, start);
+    const bool has_both = meter.held && std::isfinite(value.mean_kW) &&
+                          std::isfinite(meter.held->mean_kW) && meter.held->start == start;
+    if (has_both && meter.held->mean_kW != value.mean_kW) ++meter.report.conflicts;
     refuse(row.line,
            name + "interval " + metering::to_string(start) + " comes twice; the first value stays",
            row.text);
@@ -430,6 +435,11 @@ void ReadingIntake::keep_sample(IntakeMeter& meter, const Row& row) {
                " is a power",
            row.text, &meter);
     return;
+  }
+  // A sample without a value, such as "unavailable", may have been logged late; it says nothing.
+  while (!meter.samples.empty() && row.stamp <= meter.samples.back().time &&
+         std::isnan(meter.samples.back().value_kWh)) {
+    meter.samples.pop_back();
   }
   if (!meter.samples.empty() && row.stamp <= meter.samples.back().time) {
     ++meter.report.unsorted;

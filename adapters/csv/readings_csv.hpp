@@ -75,6 +75,7 @@ struct MeterReport {
   std::uint64_t blanks = 0;    ///< Rows without a value.
   std::uint64_t unsorted =
       0;  ///< Older than the previous row; passed on, since the closer handles late ones.
+  std::uint64_t conflicts = 0;   ///< Of the duplicates, those with another value.
   std::uint64_t duplicates = 0;  ///< Same stamp as the previous row; passed on, the closer decides.
   std::uint64_t off_grid = 0;    ///< Refused.
   /// How far stamps lay beside the grid that they were put on, at most.

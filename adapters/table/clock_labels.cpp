@@ -43,14 +43,40 @@ std::optional<int> parse_label(std::string_view text) {
   const auto number = scan.number(3);
   if (!number || *number > kLabelsMax) return {};
   if (scan.take('.') || scan.take(',')) scan.skip("0");  // 7.0, as some write whole numbers
-  return scan.is_done() ? number : std::nullopt;
+  if (scan.is_done()) return number;
+  return {};
+}
+
+namespace {
+
+/// "7:00" to "25:00", the end of a day of 25 hours.
+std::optional<seconds> parse_label_time(std::string_view text) {
+  Scanner scan{text};
+  const auto hours = scan.number(2);
+  constexpr int kHoursMax = 25;  // of a day
+  if (!hours || *hours > kHoursMax || !scan.take(':')) return {};
+  const auto minutes = scan.number(2);
+  if (!minutes || *minutes > 59) return {};
+  if (scan.take(':')) scan.skip("0");
+  const seconds time{3600 * *hours + 60 * *minutes};
+  return scan.is_done() && time <= std::chrono::hours{kHoursMax} ? std::optional{time}
+                                                                 : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<int> label_of(std::string_view text, seconds interval) {
+  if (const auto clock = parse_clock(text); clock && !clock->is_hour) {
+    return static_cast<int>(clock->time / interval);
+  }
+  if (const auto time = parse_label_time(text)) return static_cast<int>(*time / interval);
+  return parse_label(text);
 }
 
 std::optional<seconds> time_of_clock_cell(std::string_view text, const TableShape& shape) {
   if (shape.clock_format == ClockFormat::time) return parse_time_of_day(text);
   const seconds length = shape.interval > seconds{0} ? shape.interval : seconds{3600};
-  if (const auto clock = parse_clock(text); clock && !clock->is_hour) return clock->time;
-  const auto number = parse_label(text);
+  const auto number = label_of(text, length);
   return number && *number > 0 ? std::optional{(*number - 1) * length} : std::nullopt;
 }
 
@@ -176,10 +202,7 @@ Result<ClockLabels> read_clock_labels(RowSource& rows, const TableShape& shape,
     }
     if (*time_at >= row.cells.size() || *clock_at >= row.cells.size()) continue;
     const auto stamp = parse_stamp(row.cells[*time_at], shape.time_format);
-    auto label = parse_label(row.cells[*clock_at]);
-    if (const auto clock = parse_clock(row.cells[*clock_at]); clock && !clock->is_hour) {
-      label = static_cast<int>(clock->time / shape.interval);
-    }
+    const auto label = label_of(row.cells[*clock_at], shape.interval);
     if (!stamp || !label) continue;
     const bool is_empty = std::all_of(values_at.begin(), values_at.end(), [&](std::size_t at) {
       return at >= row.cells.size() || is_blank(row.cells[at]) ||

@@ -23,6 +23,9 @@ inline constexpr int kLabelsMax =
 /// "7", "07", "H07", "SP 7", "7.0": the number of an hour or an interval. @return 0…kLabelsMax
 [[nodiscard]] std::optional<int> parse_label(std::string_view text);
 
+/// The number of the interval that ends at "07:00", at "25:00" of a long day, or of a label.
+[[nodiscard]] std::optional<int> label_of(std::string_view text, std::chrono::seconds interval);
+
 /// Length of the intervals of which a day has this many: 24, 48, 96, 144 or 288.
 [[nodiscard]] std::optional<std::chrono::seconds> interval_of_labels(int labels);
 

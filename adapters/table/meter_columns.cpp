@@ -21,11 +21,6 @@ std::string_view in_last_brackets(std::string_view text) {
 std::string_view why_no_amounts(std::string_view header, const ColumnKinds& kinds) {
   const Meanings meanings = meanings_of(header);
   const std::size_t different = kinds.texts.size();
-  const bool has_no_name = folded(header) == " ";
-  if (kinds.counts_rows() &&
-      (has_no_name || meanings.has_any({Meaning::counts, Meaning::identifier}))) {
-    return "the number of a row";
-  }
   // "Meter 1" may have few different amounts, "meter id" has numbers of one length.
   const std::size_t figures = kinds.texts.empty() ? 0 : kinds.texts.begin()->size();
   const bool are_alike =
@@ -58,13 +53,15 @@ std::string_view why_no_meter(std::string_view header, std::string_view below,
   if (meanings.has(Meaning::other) || is_unit_of_others(in_last_brackets(header))) {
     return "no energy";
   }
+  if (kinds.counts_rows()) return "the number of a row";
   const bool may_be_amounts = meanings.has(Meaning::use) || !kinds.is_whole;
   return may_be_amounts ? std::string_view{} : why_no_amounts(header, kinds);
 }
 
 bool is_column_of_units(std::string_view header, const ColumnKinds& kinds) {
   if (kinds.filled == 0 || kinds.words != kinds.filled) return false;
-  const bool is_called_so = is_word_for_unit(header);
+  // "reading_type.unit" of a document's objects
+  const bool is_called_so = is_word_for_unit(header.substr(header.rfind('.') + 1));
   bool has_one = false;
   for (const std::string& text : kinds.texts) {
     // A single letter is more often a flag than watts.

@@ -215,6 +215,7 @@ class TableReader {
     }
     const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
     clocks_.assign(clocks, ClockReader{calendar_});
+    shown_.assign(clocks, Instant::min());
     return {};
   }
 
@@ -326,10 +327,7 @@ class TableReader {
       return "";
     }
     const seconds length = interval_of_clock();
-    auto number = parse_label(text);
-    if (const auto clock = parse_clock(text); clock && !clock->is_hour) {
-      number = static_cast<int>(clock->time / length);
-    }
+    const auto number = label_of(text, length);
     if (!number || *number < 1) {
       return in_quotes(text) + " in column " + in_quotes(shape_.clock_column) +
              " is no number of an hour or interval from 1 on";
@@ -422,6 +420,7 @@ class TableReader {
       return refuse("number " + in_quotes(cell(row, clock_)) + " is more than the intervals of " +
                     in_quotes(text) + " in " + calendar_.zone_name());
     }
+    note_clock_put_back(clock, written->clock);
     const auto instant = clocks_[clock].instant_of(written->clock);
     if (clocks_[clock].hour() != ClockReader::Hour::usual) {
       count_change(row, clocks_[clock].hour(), written->clock);
@@ -431,6 +430,20 @@ class TableReader {
     return refuse("timestamp " + in_quotes(text) + " does not exist in " + calendar_.zone_name() +
                   ", whose clock jumps over it; if the meter's clock is never changed, give its "
                   "own zone as 'timezone', such as \"Etc/GMT-1\"");
+  }
+
+  /// A time that comes again, an hour or less after it was shown first.
+  void note_clock_put_back(std::size_t clock, Instant shown) {
+    Instant& last = shown_[clock];
+    constexpr seconds kHour{3600};
+    if (shown <= last && last - shown < kHour) {
+      const metering::Day day{std::chrono::floor<std::chrono::days>(shown)};
+      if (facts_.put_back.size() < ClockFacts::kPutBackMax || facts_.put_back.contains(day)) {
+        facts_.put_back.try_emplace(day, shown);
+      }
+      ++facts_.repeated;
+    }
+    last = shown;
   }
 
   void count_change(const TableRow& row, ClockReader::Hour hour, Instant clock) {
@@ -598,6 +611,7 @@ class TableReader {
   std::vector<bool> is_first_of_name_;
   std::size_t last_meter_ = 0;
   std::vector<ClockReader> clocks_;  ///< One for the table, or one per meter of a long table.
+  std::vector<Instant> shown_;       ///< What each of them showed last.
   bool is_above_data_ = false;
   std::uint64_t above_ = 0;  ///< Rows between header and data so far.
   std::uint64_t last_above_ = 0;

@@ -36,8 +36,13 @@ struct ClockFacts {
   std::uint64_t naive = 0;    ///< Stamps without an offset.
   std::uint64_t skipped = 0;  ///< Of these, times that the clock skips.
   std::map<metering::Day, ClockChange> changes;
-  std::uint64_t words = 0;  ///< Cells with a word for no value, such as "n/a".
-  std::string first_word;   ///< The first of them.
+  /// Days on which a time came again within an hour, as when a clock is put back, with the first
+  /// such time; so many at most.
+  static constexpr std::size_t kPutBackMax = 16;
+  std::map<metering::Day, metering::Instant> put_back;
+  std::uint64_t repeated = 0;  ///< Times that came again.
+  std::uint64_t words = 0;     ///< Cells with a word for no value, such as "n/a".
+  std::string first_word;      ///< The first of them.
 
   void add_word(std::string_view word) {
     if (words++ == 0) first_word = word;

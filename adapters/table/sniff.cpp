@@ -479,6 +479,7 @@ class TableSniffer {
     if (names.empty()) take_short_numbers(names);
     if (names.empty() || values_.size() != 1) {
       unit_of_all_ = unit_;
+      if (unit_ != kNowhere) guess_.unit_column = column_text(unit_);
       unit_ = kNowhere;
       return;
     }
@@ -512,7 +513,7 @@ class TableSniffer {
           std::ranges::all_of(kinds.texts, [](const auto& t) { return t.size() <= kFlagLength; });
       if (is_other || kinds.filled == 0 || kinds.words == 0 || !are_short) continue;
       if (!is_flag_header(header_text(column)) && !says_quality(column)) continue;
-      guess_.shape.flag_column = column_text(column);
+      guess_.shape.flag_column = guess_.flag_column = column_text(column);
       flag_ = column;
       return;
     }
@@ -582,14 +583,31 @@ class TableSniffer {
   [[nodiscard]] bool is_in_watts(std::size_t column) const {
     const auto ends_in = [&](std::size_t of, std::string_view letters) {
       const std::string& text = full_text(of);
-      return text.size() > 2 && (text[text.size() - 2] == '_' || text[text.size() - 2] == '.') &&
+      constexpr std::string_view kBefore = "_. ";
+      return text.size() > 2 && kBefore.find(text[text.size() - 2]) != std::string_view::npos &&
              letters.find(text.back()) != std::string_view::npos;
     };
     if (!ends_in(column, "W")) return false;
+    // "Wing W" is a side of the building.
+    const std::string& text = full_text(column);
+    const std::string name = folded(std::string_view{text}.substr(0, text.size() - 2));
+    for (const std::string_view side :
+         {"wing ", "building ", "block ", "side ", "tower ", "fluegel ", "gebaeude ", "haus ",
+          "trakt ", "aile ", "batiment ", "ala ", "edificio ", "vleugel ", "gebouw "}) {
+      if (name.ends_with(side)) return false;
+    }
     for (std::size_t other = 0; other < width_; ++other) {
       if (ends_in(other, "NESO")) return false;
     }
     return true;
+  }
+
+  /// The unit of "Active import (kW)", if a column has that and nothing else.
+  [[nodiscard]] std::string unit_in_type(std::size_t column) const {
+    const ColumnKinds& kinds = kinds_[column];
+    if (!kinds.is_mostly(kinds.words) || kinds.texts.size() != 1) return "";
+    const NameAndUnit parts = split_unit(*kinds.texts.begin());
+    return parts.is_unit_in_brackets ? parts.unit : "";
   }
 
   void add_value(std::size_t column, const std::string& text) {
@@ -613,6 +631,14 @@ class TableSniffer {
     if (value.unit.empty() && unit_of_all_ != kNowhere && kinds_[unit_of_all_].texts.size() == 1) {
       say(*kinds_[unit_of_all_].texts.begin(),
           "as column " + csv::in_quotes(column_text(unit_of_all_)) + " says");
+    }
+    if (value.unit.empty()) {
+      for (std::size_t other = 0; other < width_; ++other) {
+        const std::string unit = unit_in_type(other);
+        if (unit.empty()) continue;
+        say(unit, "as column " + csv::in_quotes(column_text(other)) + " says");
+        break;
+      }
     }
     if (value.unit.empty() && is_in_watts(column)) {
       value.name.resize(value.name.size() - 2);

@@ -44,6 +44,8 @@ struct TableGuess {
   std::string time_format_because;
   bool is_time_format_open = false;  ///< Day or month first: the data do not tell.
   std::string decimal_because;
+  std::string flag_column;            ///< That says how good values are, whatever its flags mean.
+  std::string unit_column;            ///< With units, of a table whose rows do not name meters.
   bool has_offsets = false;           ///< Stamps include their offset from UTC.
   std::optional<csv::Stamps> stamps;  ///< What a stamp marks, if that is certain.
   std::string stamps_because;

@@ -21,6 +21,27 @@ std::optional<std::int64_t> whole_number_of(std::string_view cell) {
   return is_whole ? std::optional{number} : std::nullopt;
 }
 
+/// 1234 and "1,234", whatever the sign between thousands.
+std::optional<std::int64_t> counted_number_of(std::string_view cell) {
+  std::string figures;
+  std::size_t in_group = 0;
+  bool is_grouped = false;
+  for (const char c : cell) {
+    if (c >= '0' && c <= '9') {
+      figures += c;
+      ++in_group;
+    } else if ((c == ',' || c == '.' || c == ' ' || c == '\'') && !figures.empty() &&
+               (is_grouped ? in_group == 3 : in_group <= 3)) {
+      is_grouped = true;
+      in_group = 0;
+    } else {
+      return {};
+    }
+  }
+  if (is_grouped && in_group != 3) return {};
+  return whole_number_of(figures);
+}
+
 bool is_bare_number(std::string_view cell) {
   const DecimalSigns signs = possible_decimal_signs(cell);
   return signs.point || signs.comma;
@@ -44,8 +65,10 @@ class ColumnCounter {
     if (csv::is_digits(cell) && cell.size() >= 8) ++kinds.long_figures;
     const auto whole = whole_number_of(cell);
     kinds.is_whole = kinds.is_whole && whole.has_value();
-    if (whole && last_ && *whole == *last_ + 1) ++kinds.steps;
-    last_ = whole;
+    const auto counted = counted_number_of(cell);
+    if (counted && last_ && *counted == *last_ + 1) ++kinds.steps;
+    if (counted && last_ && *counted == *last_ - 1) ++kinds.steps_back;
+    last_ = counted;
     if (parse_clock(cell)) ++kinds.times_of_day;
     if (kinds.texts.size() < 100) kinds.texts.insert(std::string{cell});
   }
@@ -77,7 +100,7 @@ bool ColumnKinds::is_mostly(std::size_t count) const {
 bool ColumnKinds::repeats() const { return texts.size() < 100 && texts.size() * 3 <= filled; }
 
 bool ColumnKinds::counts_rows() const {
-  return is_whole && filled > 3 && steps + 1 >= filled * 99 / 100;
+  return filled > 3 && std::max(steps, steps_back) + 1 >= filled * 99 / 100;
 }
 
 bool ColumnKinds::is_identifier() const {

@@ -39,12 +39,13 @@ struct ColumnKinds {
   std::size_t words = 0;                     ///< Cells that are not numbers.
   std::size_t long_figures = 0;              ///< Of eight figures or more, and nothing else.
   bool is_whole = true;                      ///< All cells are whole numbers.
-  std::size_t steps = 0;                     ///< Cells that are one more than the cell above.
+  std::size_t steps = 0;                     ///< Cells that are one more than the cell above …
+  std::size_t steps_back = 0;                ///< … or one less.
 
   [[nodiscard]] bool is_mostly(std::size_t count) const;
   /// Texts come again and again, as those of names and flags do.
   [[nodiscard]] bool repeats() const;
-  /// Whole numbers that rise by one from row to row.
+  /// Whole numbers that rise by one from row to row, or fall by one.
   [[nodiscard]] bool counts_rows() const;
   /// Long figures that stay the same for rows and rows, as no amount does.
   [[nodiscard]] bool is_identifier() const;

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "adapters/csv/fields.hpp"
+#include "daemon/site/setup/agreed_exports.hpp"
 #include "daemon/site/setup/clock_evidence.hpp"
 #include "daemon/site/setup/joined_exports.hpp"
 
@@ -51,6 +52,8 @@ void take_answer(const OpenQuestion& question, const std::string& answer, Survey
     const auto at = std::ranges::find(table::kTimeFormats, answer);
     if (at == table::kTimeFormats.end()) return;
     hints.table.dates = static_cast<table::TimeFormat>(at - table::kTimeFormats.begin());
+  } else if (question.option == "--clock") {
+    hints.clock = answer;
   }
 }
 
@@ -78,24 +81,55 @@ std::string implausible(const SurveyedExport& survey) {
   return {};
 }
 
-/// Asks until nothing is open. @return or the exit code after saying what is wrong
-tl::expected<SurveyedExport, int> survey_aloud(
-    const std::filesystem::path& file, const std::optional<metering::LocalCalendar>& calendar,
-    SurveyHints& hints, const Console& console) {
-  for (;;) {
-    auto survey = survey_export(file, calendar, hints);
+/// Surveys all files: first each by itself, then those again for which others of their kind settle
+/// what they leave open.
+tl::expected<std::vector<SurveyedExport>, int> survey_all(
+    const std::vector<std::filesystem::path>& files,
+    const std::optional<metering::LocalCalendar>& calendar, std::vector<SurveyHints>& hints,
+    const Console& console) {
+  std::vector<SurveyedExport> exports;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    auto survey = survey_export(files[i], calendar, hints[i]);
     if (!survey) return tl::unexpected(console.fail(survey.error()));
-    if (survey->questions.empty()) {
-      if (const std::string why = implausible(*survey); !why.empty()) {
-        return tl::unexpected(console.fail(why));
+    exports.push_back(std::move(*survey));
+  }
+  const auto agreed = hints_of_others(exports, hints, calendar);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!agreed[i]) continue;
+    hints[i] = *agreed[i];
+    auto survey = survey_export(files[i], calendar, hints[i]);
+    if (!survey) return tl::unexpected(console.fail(survey.error()));
+    exports[i] = std::move(*survey);
+  }
+  return exports;
+}
+
+/// Asks until nothing is open. @return or the exit code after saying what is wrong
+tl::expected<std::vector<SurveyedExport>, int> survey_aloud(
+    const std::vector<std::filesystem::path>& files,
+    const std::optional<metering::LocalCalendar>& calendar, SurveyHints& told,
+    const Console& console) {
+  std::vector<SurveyHints> hints(files.size(), told);
+  for (;;) {
+    auto exports = survey_all(files, calendar, hints, console);
+    if (!exports) return exports;
+    const auto open = std::ranges::find_if(
+        *exports, [](const SurveyedExport& one) { return !one.questions.empty(); });
+    if (open == exports->end()) {
+      for (const SurveyedExport& one : *exports) {
+        if (const std::string why = implausible(one); !why.empty()) {
+          return tl::unexpected(console.fail(why));
+        }
       }
-      return std::move(*survey);
+      agree(*exports);
+      return exports;
     }
-    const OpenQuestion& question = survey->questions.front();
+    const OpenQuestion& question = open->questions.front();
     const std::string answer =
         console.answers == nullptr ? std::string{} : answer_to(question, console);
     if (answer.empty()) return tl::unexpected(console.fail(refusal_of(question)));
-    take_answer(question, answer, hints);
+    take_answer(question, answer, told);
+    for (SurveyHints& one : hints) take_answer(question, answer, one);
   }
 }
 
@@ -113,19 +147,16 @@ tl::expected<ExportDraft, int> draft_aloud(const std::vector<std::filesystem::pa
     }
     calendar = std::move(*opened);
   }
-  std::vector<SurveyedExport> exports;
   std::set<std::filesystem::path> seen;
   for (const std::filesystem::path& one : files) {
     std::error_code ignored;
-    if (!seen.insert(std::filesystem::weakly_canonical(one, ignored)).second) {
-      return tl::unexpected(
-          console.misused(fmt::format("'{}' is named twice; name it once", one.string())));
-    }
-    auto survey = survey_aloud(one, calendar, hints, console);
-    if (!survey) return tl::unexpected(survey.error());
-    exports.push_back(std::move(*survey));
+    if (seen.insert(std::filesystem::weakly_canonical(one, ignored)).second) continue;
+    return tl::unexpected(
+        console.misused(fmt::format("'{}' is named twice; name it once", one.string())));
   }
-  exports = joined_exports(std::move(exports));
+  auto surveyed = survey_aloud(files, calendar, hints, console);
+  if (!surveyed) return tl::unexpected(surveyed.error());
+  auto exports = joined_exports(std::move(*surveyed));
   Guess<std::string> zone = zone_of_draft(timezone, exports);
   SiteDraft draft = draft_site(exports, folder, zone);
   if (!calendar) {

@@ -50,7 +50,9 @@ std::optional<Instant> reset_in(const RegisterStep& step, const LocalCalendar& c
   const auto span = resets == Resets::daily
                         ? calendar.day_span(calendar.local_time(step.to.time).date)
                         : calendar.month_span(calendar.month_of(step.to.time));
-  return span.begin >= step.from.time ? std::optional{span.begin} : std::nullopt;
+  // A sample may be taken some seconds late, and be stamped so.
+  constexpr seconds kLate{120};
+  return span.begin + kLate >= step.from.time ? std::optional{span.begin} : std::nullopt;
 }
 
 }  // namespace
@@ -161,6 +163,10 @@ void RegisterEvidence::find_resets(const LocalCalendar& calendar, RegisterVerdic
     verdict.resets = resets_by(*fixed);
     if (verdict.resets != Resets::never) verdict.reset_zone = fixed->zone_name();
   }
+}
+
+bool RegisterEvidence::may_rest() const {
+  return first_ && falls_ == 0 && rises_ < kRisesMin && highest_kWh_ > 0.0;
 }
 
 RegisterVerdict RegisterEvidence::verdict(const LocalCalendar& calendar) const {

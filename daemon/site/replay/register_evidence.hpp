@@ -40,6 +40,10 @@ class RegisterEvidence {
   /// A total hardly ever falls, unless it is set to zero at midnight or when a month begins, while
   /// a building's consumption falls about as often as it rises. One that counts back what is
   /// delivered does, but moves far in small steps.
+  /// Whether its values are none, or hardly ever one more and never less: those of a register that
+  /// rests, if it is one.
+  [[nodiscard]] bool may_rest() const;
+
   [[nodiscard]] RegisterVerdict verdict(const metering::LocalCalendar& calendar) const;
 
  private:

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "daemon/site/replay/clock_doubts.hpp"
+
 namespace recald::daemon {
 namespace {
 
@@ -45,8 +47,9 @@ std::optional<std::string> fixed_clock_because(const table::ClockFacts& facts,
   int autumns = 0;
   const metering::Day* spring = nullptr;
   const metering::Day* autumn = nullptr;
+  if (!facts.put_back.empty() && other_clock(facts, calendar)) return {};
   for (const auto& [day, change] : facts.changes) {
-    if (change.second > 0) return {};
+    if (change.second > 0 || facts.put_back.contains(day)) return {};
     if (static_cast<double>(change.skipped) >= kMost * per_hour) {
       ++springs;
       spring = &day;

@@ -24,6 +24,7 @@
 #include "adapters/table/loads/rows_apart.hpp"
 #include "adapters/table/read_table.hpp"
 #include "core/text/ascii.hpp"
+#include "daemon/site/replay/clock_doubts.hpp"
 #include "daemon/site/setup/clock_evidence.hpp"
 #include "daemon/site/setup/file_guess.hpp"
 #include "daemon/site/setup/load_parts.hpp"
@@ -113,8 +114,10 @@ std::vector<SurveyedMeter> meters_of_columns(const table::TableGuess& guess,
   std::vector<SurveyedMeter> meters;
   for (const table::GuessedColumn& value : guess.values) {
     std::string name = value.name;
-    if (name.empty()) name = guess.values.size() == 1 ? file_stem : value.column;
+    const bool is_by_file = name.empty() && guess.values.size() == 1;
+    if (name.empty()) name = is_by_file ? file_stem : value.column;
     meters.push_back(described(name, "", value.column, value.unit, value.unit_because));
+    meters.back().is_named_by_file = is_by_file;
   }
   return meters;
 }
@@ -350,6 +353,28 @@ bool learn_flags(SurveyedExport& survey, const WholeFile& whole) {
   return !known.empty();
 }
 
+/// What hardly moves beside registers of the same unit is one that rests, such as that of the
+/// tariff of a season.
+bool take_resting_registers(SurveyedExport& survey, const WholeFile& whole) {
+  bool is_new = false;
+  for (std::size_t i = 0; i < survey.meters.size(); ++i) {
+    SurveyedMeter& meter = survey.meters[i];
+    const MeterWatch& watch = whole.watches[i];
+    if (meter.is_register || watch.is_rate || !watch.as_register.may_rest()) continue;
+    const auto sibling = std::ranges::find_if(survey.meters, [&](const SurveyedMeter& other) {
+      return other.is_register && other.as_register.is_register &&
+             other.as_register.resets == metering::Resets::never &&
+             other.unit.value == meter.unit.value;
+    });
+    if (sibling == survey.meters.end()) continue;
+    meter.is_register = is_new = true;
+    meter.as_register = sibling->as_register;
+    meter.as_register.because = "it stands still, beside registers of the same unit";
+    meter.as_register.exchanges.clear();
+  }
+  return is_new;
+}
+
 /// Meters that only show in their rows how they are to be read: registers, and values that come at
 /// longer steps later.
 /// @return whether there are any, so that the file is to be read again.
@@ -374,7 +399,7 @@ bool learn_from_rows(SurveyedExport& survey, const metering::LocalCalendar& cale
       is_new = is_new || meter.as_register.is_register;
     }
   }
-  return is_new;
+  return take_resting_registers(survey, whole) || is_new;
 }
 
 /// A clock that is never changed, if the stamps show it on more than one day.
@@ -427,10 +452,19 @@ Result<void> require_sound(const SurveyedExport& survey, const WholeFile& whole)
   }
   std::uint64_t unsorted = 0;
   std::uint64_t twice = 0;
+  std::uint64_t conflicts = 0;
   std::uint64_t refused = report.issues.total;
   for (const csv::MeterReport& meter : report.meters) {
     unsorted += meter.unsorted;
     twice += meter.duplicates;
+    conflicts += meter.conflicts;
+  }
+  if (conflicts * 100 > report.readings) {
+    return unfit(fmt::format(
+        "{} of its {} rows have the same time as another one and a different value, and no column "
+        "tells apart what they are of; export each meter by itself, or name the column that names "
+        "the meters with --meter-column",
+        conflicts, report.readings));
   }
   refused -= std::min(refused, unsorted + twice);
   if (unsorted * 1000 > report.readings) {
@@ -454,36 +488,60 @@ Result<void> require_sound(const SurveyedExport& survey, const WholeFile& whole)
   return {};
 }
 
+/// @see guess_stamps
+struct StampsGuess {
+  Guess<csv::Stamps> stamps;
+  int weight = kCertainStamps;
+};
+
 /// A record that begins a day at midnight has the starts of its intervals, one that ends a day at
 /// midnight their ends.
-Guess<csv::Stamps> guess_stamps(const SurveyedExport& survey, const metering::TimeSpan& span,
-                                seconds interval, const metering::LocalCalendar& calendar) {
-  if (!survey.table) return {csv::Stamps::start, "as recald's own files have it unless told"};
+StampsGuess guess_stamps(const SurveyedExport& survey, const metering::TimeSpan& span,
+                         seconds interval, const metering::LocalCalendar& calendar) {
+  if (!survey.table) return {{csv::Stamps::start, "as recald's own files have it unless told"}};
   if (survey.table->shape.container == Container::green_button) {
-    return {csv::Stamps::start, "as Green Button feeds have it"};
+    return {{csv::Stamps::start, "as Green Button feeds have it"}};
   }
   if (survey.table->shape.container == Container::nem12) {
-    return {csv::Stamps::start, "as NEM12 counts its intervals"};
+    return {{csv::Stamps::start, "as NEM12 counts its intervals"}};
   }
   const table::TableShape& shape = survey.table->shape;
   if (shape.layout == table::Layout::row_a_day ||
       (shape.layout == table::Layout::column_a_time && !shape.clock_column.empty())) {
-    return {csv::Stamps::start, "as its times run through whole days"};
+    return {{csv::Stamps::start, "as its times run through whole days"}};
   }
-  if (survey.table->stamps) return {*survey.table->stamps, survey.table->stamps_because};
+  if (survey.table->stamps) return {{*survey.table->stamps, survey.table->stamps_because}};
   const auto minute = [&](Instant t) { return calendar.local_time(t).minute_of_day; };
   const int step = static_cast<int>(interval.count() / 60);
   const Instant last = span.end - interval;
   if (minute(span.begin) == 0 && minute(last) == 1440 - step) {
-    return {csv::Stamps::start, "it begins at midnight and ends before it"};
+    return {{csv::Stamps::start, "it begins at midnight and ends before it"}, 2};
   }
   if (minute(span.begin) == step && minute(last) == 0) {
-    return {csv::Stamps::end, "it begins after midnight and ends at it"};
+    return {{csv::Stamps::end, "it begins after midnight and ends at it"}, 2};
   }
   // One end may be cut; the other says it too.
-  if (minute(span.begin) == 0) return {csv::Stamps::start, "it begins at midnight"};
-  if (minute(span.begin) == step) return {csv::Stamps::end, "it begins an interval after midnight"};
-  return {csv::Stamps::start, "guessed; a file of whole days would decide"};
+  if (minute(span.begin) == 0) return {{csv::Stamps::start, "it begins at midnight"}, 1};
+  if (minute(span.begin) == step)
+    return {{csv::Stamps::end, "it begins an interval after midnight"}, 1};
+  return {{csv::Stamps::start, "guessed; a file of whole days would decide"}, 0};
+}
+
+/// A question where the file's clock is not that of the building's zone.
+void ask_for_clock(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
+  if (!survey.table || !survey.table->shape.timezone.empty()) return;
+  const auto other = other_clock(survey.clock, calendar);
+  if (!other) return;
+  std::vector<std::string> answers = other->zones;
+  constexpr std::size_t kShown = 4;
+  if (answers.size() > kShown) answers.resize(kShown);
+  answers.push_back(calendar.zone_name());
+  survey.questions.push_back(
+      {.words = fmt::format("'{}': {}; it fits the time zone {}.", survey.files.front().string(),
+                            other->because, fmt::join(other->zones, ", ")),
+       .option = "--clock",
+       .subject = "",
+       .answers = std::move(answers)});
 }
 
 /// Rounded up to what a person would write.
@@ -492,6 +550,29 @@ seconds tolerance_for(seconds beside) {
     if (beside <= seconds{rounded}) return seconds{rounded};
   }
   return std::chrono::ceil<std::chrono::minutes>(beside);
+}
+
+/// The calendar by which the file's stamps are read.
+metering::LocalCalendar clock_of(const SurveyedExport& survey,
+                                 const metering::LocalCalendar& calendar) {
+  if (!survey.table || survey.table->shape.timezone.empty()) return calendar;
+  return metering::LocalCalendar::open(survey.table->shape.timezone).value_or(calendar);
+}
+
+/// Of several columns or rows those that are zero from first to last measure nothing here.
+void leave_out_zeros(SurveyedExport& survey) {
+  const auto is_zero = [](const SurveyedMeter& meter) {
+    return !meter.is_register && meter.zero_share == 1.0 && meter.further_names.empty() &&
+           meter.further_columns.empty();
+  };
+  if (std::ranges::all_of(survey.meters, is_zero)) return;
+  for (const SurveyedMeter& meter : survey.meters) {
+    if (!is_zero(meter)) continue;
+    survey.notes.push_back(fmt::format("{}: {} is zero in all its rows and is left out.",
+                                       survey.files.front().filename().string(),
+                                       csv::in_quotes(meter.name)));
+  }
+  std::erase_if(survey.meters, is_zero);
 }
 
 /// What of a meter's rows a person should know.
@@ -531,6 +612,7 @@ void describe_meter(SurveyedExport& survey, SurveyedMeter& meter, const csv::Met
 void take_results(SurveyedExport& survey, const WholeFile& whole,
                   const metering::LocalCalendar& calendar) {
   std::vector<SurveyedMeter> usable;
+  const metering::LocalCalendar own_clock = clock_of(survey, calendar);
   for (std::size_t i = 0; i < survey.meters.size(); ++i) {
     SurveyedMeter& meter = survey.meters[i];
     const csv::MeterReport& report = whole.report.meters[i];
@@ -553,7 +635,9 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     meter.refused = report.refused;
     meter.span = *report.span;
     meter.interval = report.shown.interval;
-    meter.stamps = guess_stamps(survey, meter.span, meter.interval, calendar);
+    const StampsGuess stamps = guess_stamps(survey, meter.span, meter.interval, own_clock);
+    meter.stamps = stamps.stamps;
+    meter.stamps_weight = stamps.weight;
     if (meter.stamps.value == csv::Stamps::end) {
       meter.span = {meter.span.begin - meter.interval, meter.span.end - meter.interval};
     }
@@ -565,7 +649,7 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     const bool is_rate = unit && unit->is_rate;
     const bool was_read_as_register = meter.is_register && meter.as_register.is_register;
     const bool has_parts = !meter.further_names.empty() || !meter.further_columns.empty();
-    if (!was_read_as_register || !has_parts) {
+    if (!was_read_as_register || (!has_parts && !watch.as_register.may_rest())) {
       meter.as_register = watch.as_register.verdict(calendar);
     }
     meter.is_register = !is_rate && (meter.is_register || meter.as_register.is_register);
@@ -689,6 +773,7 @@ Container container_in_text(const std::vector<std::string>& lines) {
 /// Channels in units that are no energy, as reactive power is, beside others that are.
 void leave_out_other_quantities(SurveyedExport& survey) {
   const auto is_other = [](const SurveyedMeter& meter) {
+    if (meter.unit.value.empty()) return false;
     const auto unit = metering::find_unit(meter.unit.value, meter.utility.value, factors_of(meter));
     return !unit && unit.error().code == ErrorCode::invalid_value;
   };
@@ -704,11 +789,45 @@ void leave_out_other_quantities(SurveyedExport& survey) {
                                      fmt::join(words, ", ")));
 }
 
+/// The water that flows through a heat meter is no gas, if only its unit says so.
+void leave_out_volumes(SurveyedExport& survey) {
+  const auto is_heat = [](const SurveyedMeter& meter) {
+    return meter.utility.value == metering::Utility::heating ||
+           meter.utility.value == metering::Utility::chilled_water;
+  };
+  if (std::ranges::none_of(survey.meters, is_heat)) return;
+  std::vector<std::string> words;
+  const auto is_volume = [&](const SurveyedMeter& meter) {
+    const std::string name = table::folded(meter.name);
+    return meter.utility.value == metering::Utility::gas &&
+           meter.utility.because.starts_with("by its unit") &&
+           name.find("gas") == std::string::npos;
+  };
+  for (const SurveyedMeter& meter : survey.meters) {
+    if (is_volume(meter)) words.push_back(fmt::format("{} ({})", meter.name, meter.unit.value));
+  }
+  if (words.empty()) return;
+  std::erase_if(survey.meters, is_volume);
+  survey.notes.push_back(
+      fmt::format("{}: beside heat these are volumes of its water, not gas, and left out: {}.",
+                  survey.files.front().filename().string(), fmt::join(words, ", ")));
+}
+
+/// What neither a column nor a unit says, the file's name may: "Gas.csv".
+void guess_by_file_name(SurveyedExport& survey) {
+  if (survey.meters.size() != 1) return;
+  SurveyedMeter& meter = survey.meters.front();
+  if (!meter.utility.because.starts_with("guessed")) return;
+  const UtilityGuess by_file =
+      guess_utility(survey.files.front().stem().string(), meter.unit.value);
+  if (by_file.because == "by its name") {
+    meter.utility = {by_file.utility, "by its file's name"};
+  }
+}
+
 /// Series without a unit, beside others that have one, are temperatures, switches and the like.
 void leave_out_without_unit(SurveyedExport& survey) {
-  const auto has_none = [](const SurveyedMeter& meter) {
-    return meter.unit.because.starts_with("guessed");
-  };
+  const auto has_none = [](const SurveyedMeter& meter) { return meter.unit.value.empty(); };
   if (std::ranges::all_of(survey.meters, has_none)) {
     survey.table->shape.unit_column.clear();
     return;
@@ -939,6 +1058,7 @@ Result<void> tell_rows_apart(SurveyedExport& survey, const metering::LocalCalend
            std::ranges::find(found->alike, value.column) != found->alike.end();
   });
   if (changed.table->values.empty()) return {};
+  if (apart.unit_column.empty()) apart.unit_column = changed.table->unit_column;
   changed.meters = TRY(meters_of_rows(file, *changed.table));
   changed.notes.push_back(
       fmt::format("{}: times come more than once; {} {} apart what the rows are of ({} names).",
@@ -976,10 +1096,12 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   auto survey = described_export(file, hints);
   if (!survey) return survey;
   apply_units(hints, *survey);
+  leave_out_volumes(*survey);
+  guess_by_file_name(*survey);
   survey->told_interval = hints.interval;
   if (survey->table && !hints.clock.empty()) {
     survey->table->shape.timezone = hints.clock;
-    survey->clock_because = "as told";
+    survey->clock_because = hints.clock_because;
   }
   if (is_without_zone(*survey) && !calendar) {
     return failure(ErrorCode::invalid_value,
@@ -1015,14 +1137,17 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
   for (const std::string& note : whole->clock.notes) {
     survey->notes.push_back(fmt::format("{}: {}.", file.filename().string(), note));
   }
+  survey->clock = whole->clock;
   take_results(*survey, *whole, *clock);
   TRY(take_loads(*survey, *clock));
+  leave_out_zeros(*survey);
   if (hints.stamps) {
     for (SurveyedMeter& meter : survey->meters) {
       meter.stamps = Guess<csv::Stamps>{*hints.stamps, "as told"};
     }
   }
   ask_what_is_open(*survey);
+  if (calendar && hints.clock.empty()) ask_for_clock(*survey, *calendar);
   if (survey->meters.empty()) {
     return failure(ErrorCode::not_enough_data,
                    fmt::format("'{}': no meter has a value that can be used", file.string()));

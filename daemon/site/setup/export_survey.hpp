@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/table/read_table.hpp"
 #include "adapters/table/sniff.hpp"
 #include "core/metering/civil_time.hpp"
 #include "core/metering/reading.hpp"
@@ -24,6 +25,8 @@ struct Guess {
   std::string because;
 };
 
+inline constexpr int kCertainStamps = 3;  ///< Said by the file, not by where it begins and ends.
+
 struct SurveyedMeter {
   std::string name;          ///< As people call it.
   std::string name_in_file;  ///< In the meter column of a long table; else empty.
@@ -34,6 +37,8 @@ struct SurveyedMeter {
   Guess<std::string> unit;
   Guess<metering::Utility> utility;
   Guess<csv::Stamps> stamps{csv::Stamps::start, ""};
+  int stamps_weight = 0;  ///< Of the evidence for it; 0: guessed.
+  bool is_named_by_file = false;
   std::chrono::seconds interval{0};
   bool is_of_other_steps = false;    ///< Its rows come at others than its interval.
   bool needs_heating_value = false;  ///< Gas by volume.
@@ -57,6 +62,7 @@ struct SurveyedExport {
   std::vector<SurveyedMeter> meters;
   std::vector<std::string> notes;       ///< A sentence each: what is undecided, or left out.
   std::vector<OpenQuestion> questions;  ///< What has to be known before it can be read.
+  table::ClockFacts clock;              ///< What its stamps show of clock changes.
   std::string clock_because;   ///< Why the table has a zone of its own; empty: it has none.
   std::string layout_because;  ///< Why its times are taken to run that way.
   std::optional<std::chrono::seconds> told_interval;  ///< Of its values, if somebody said so.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -16,7 +17,8 @@ namespace {
 bool is_guessed(const Guess<csv::Stamps>& stamps) { return stamps.because.starts_with("guessed"); }
 
 bool is_same_meter(const SurveyedMeter& a, const SurveyedMeter& b) {
-  return a.name == b.name && a.name_in_file == b.name_in_file && a.column == b.column &&
+  const bool is_called_alike = a.name == b.name || (a.is_named_by_file && b.is_named_by_file);
+  return is_called_alike && a.name_in_file == b.name_in_file && a.column == b.column &&
          a.further_names == b.further_names && a.further_columns == b.further_columns &&
          a.unit.value == b.unit.value && a.utility.value == b.utility.value &&
          a.interval == b.interval && a.is_register == b.is_register &&
@@ -46,6 +48,11 @@ bool continues(const SurveyedMeter& later, const SurveyedMeter& earlier) {
   const bool is_near =
       later.span.begin <= earlier.span.end + kSeam && earlier.span.begin <= later.span.end + kSeam;
   if (!is_near) return false;
+  // Of the days at the seam of two downloads all may have been corrected since.
+  constexpr int kShort = 4;  // times in the shorter of the two
+  const auto common =
+      std::min(later.span.end, earlier.span.end) - std::max(later.span.begin, earlier.span.begin);
+  if (kShort * common <= std::min(later.span.length(), earlier.span.length())) return true;
   if (const auto alike = share_alike(later.samples, earlier.samples)) {
     return *alike >= kCorrectedMax;
   }
@@ -103,6 +110,18 @@ void join(SurveyedExport& one, SurveyedExport more) {
   for (std::size_t i = 0; i < one.meters.size(); ++i) join(one.meters[i], more.meters[i]);
 }
 
+/// Meters of several files that are called alike, as "Reading" in each, are called by their files.
+void name_by_files(std::vector<SurveyedExport>& exports) {
+  std::map<std::string, int> called;
+  for (const SurveyedExport& one : exports) {
+    if (one.meters.size() == 1) ++called[one.meters.front().name];
+  }
+  for (SurveyedExport& one : exports) {
+    if (one.meters.size() != 1 || called[one.meters.front().name] < 2) continue;
+    one.meters.front().name = one.files.front().stem().string();
+  }
+}
+
 metering::Instant last_end(const SurveyedExport& one) {
   return std::ranges::max(one.meters, {}, [](const SurveyedMeter& meter) { return meter.span.end; })
       .span.end;
@@ -128,6 +147,7 @@ std::vector<SurveyedExport> joined_exports(std::vector<SurveyedExport> exports) 
   std::ranges::sort(heads);
   std::vector<SurveyedExport> joined;
   for (const std::size_t i : heads) joined.push_back(std::move(exports[i]));
+  name_by_files(joined);
   return joined;
 }
 

@@ -130,7 +130,7 @@ bool are_alike(const SurveyedMeter& a, const SurveyedMeter& b) {
          a.is_register == b.is_register && a.unit.value == b.unit.value;
 }
 
-/// Whether hardly any interval has energy of both.
+/// Whether hardly any interval has a row of both, or energy of both.
 bool take_turns(const SurveyedMeter& a, const SurveyedMeter& b) {
   const auto& of_a = a.samples.kept();
   const auto& of_b = b.samples.kept();
@@ -138,6 +138,11 @@ bool take_turns(const SurveyedMeter& a, const SurveyedMeter& b) {
     return static_cast<std::size_t>(
         std::ranges::count_if(kept, [](const auto& one) { return one.second != 0.0; }));
   };
+  const auto common = static_cast<std::size_t>(
+      std::ranges::count_if(of_a, [&](const auto& one) { return of_b.contains(one.first); }));
+  const std::size_t fewer = std::min(of_a.size(), of_b.size());
+  const bool have_own_rows = static_cast<double>(common) <= kAtOnceMax * static_cast<double>(fewer);
+  if (have_own_rows && fewer >= kSamplesMin) return true;
   const std::size_t least = std::min(with_energy(of_a), with_energy(of_b));
   if (least < kSamplesMin) return false;
   std::size_t both = 0;

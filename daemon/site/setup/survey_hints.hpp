@@ -19,6 +19,7 @@ struct SurveyHints {
   std::optional<csv::Stamps> stamps;
   std::optional<std::chrono::seconds> interval;
   std::string clock;  ///< IANA zone of the stamps; empty: the building's, or as they show.
+  std::string clock_because = "as told";
 };
 
 /// What no evidence settles.

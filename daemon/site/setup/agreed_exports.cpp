@@ -1,0 +1,186 @@
+#include "daemon/site/setup/agreed_exports.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "daemon/site/setup/clock_evidence.hpp"
+
+namespace recald::daemon {
+namespace {
+
+using Kind = std::vector<std::size_t>;  // exports that are written alike
+
+bool are_alike(const SurveyedExport& a, const SurveyedExport& b) {
+  if (!a.table || !b.table) return false;
+  const table::TableShape& one = a.table->shape;
+  const table::TableShape& other = b.table->shape;
+  return one.container == other.container && one.layout == other.layout &&
+         one.separator == other.separator && one.time_column == other.time_column &&
+         one.clock_column == other.clock_column && one.meter_column == other.meter_column &&
+         one.unit_column == other.unit_column;
+}
+
+std::vector<Kind> kinds_of(std::span<const SurveyedExport> exports) {
+  std::vector<Kind> kinds;
+  for (std::size_t i = 0; i < exports.size(); ++i) {
+    const auto known = std::ranges::find_if(
+        kinds, [&](const Kind& kind) { return are_alike(exports[kind.front()], exports[i]); });
+    if (known != kinds.end()) {
+      known->push_back(i);
+    } else {
+      kinds.push_back({i});
+    }
+  }
+  return kinds;
+}
+
+/// What those agree on that are certain; nothing where none is, or two contradict each other.
+template <class T, class IsCertain, class ValueOf>
+std::optional<T> certain_value(std::span<const SurveyedExport> exports, const Kind& kind,
+                               IsCertain is_certain, ValueOf value_of) {
+  std::optional<T> agreed;
+  for (const std::size_t i : kind) {
+    const table::TableGuess& guess = *exports[i].table;
+    if (!is_certain(guess)) continue;
+    if (agreed && *agreed != value_of(guess)) return {};
+    agreed = value_of(guess);
+  }
+  return agreed;
+}
+
+/// A clock that stays on winter time, by the changes of all files together.
+std::optional<std::string> fixed_clock_of(std::span<const SurveyedExport> exports, const Kind& kind,
+                                          const metering::LocalCalendar& calendar,
+                                          std::string& because) {
+  table::ClockFacts facts;
+  std::optional<metering::TimeSpan> span;
+  double per_hour = 1.0;
+  for (const std::size_t i : kind) {
+    const SurveyedExport& one = exports[i];
+    if (one.table->has_offsets || !one.table->shape.timezone.empty()) return {};
+    for (const auto& [day, change] : one.clock.changes) {
+      table::ClockChange& known = facts.changes[day];
+      known.skipped = std::max(known.skipped, change.skipped);
+      known.first = std::max(known.first, change.first);
+      known.second = std::max(known.second, change.second);
+    }
+    facts.put_back.insert(one.clock.put_back.begin(), one.clock.put_back.end());
+    for (const SurveyedMeter& meter : one.meters) {
+      per_hour = 3600.0 / static_cast<double>(meter.interval.count());
+      if (!span) span = meter.span;
+      span->begin = std::min(span->begin, meter.span.begin);
+      span->end = std::max(span->end, meter.span.end);
+    }
+  }
+  if (!span) return {};
+  const auto found = fixed_clock_because(facts, *span, per_hour, calendar);
+  if (!found) return {};
+  because = *found;
+  return fixed_zone(calendar, span->begin);
+}
+
+bool is_of_rows(const SurveyedMeter& meter) { return !meter.is_register; }
+
+void agree_on_stamps(std::span<SurveyedExport> exports, const Kind& kind) {
+  std::array<int, 2> weights{};  // of starts and ends
+  const SurveyedMeter* strongest = nullptr;
+  for (const std::size_t i : kind) {
+    for (const SurveyedMeter& meter : exports[i].meters) {
+      if (!is_of_rows(meter)) continue;
+      weights[meter.stamps.value == csv::Stamps::end ? 1 : 0] += meter.stamps_weight;
+    }
+  }
+  if (weights[0] == weights[1]) return;
+  const csv::Stamps agreed = weights[1] > weights[0] ? csv::Stamps::end : csv::Stamps::start;
+  for (const std::size_t i : kind) {
+    for (const SurveyedMeter& meter : exports[i].meters) {
+      if (!is_of_rows(meter) || meter.stamps.value != agreed) continue;
+      if (strongest == nullptr || meter.stamps_weight > strongest->stamps_weight) {
+        strongest = &meter;
+      }
+    }
+  }
+  const Guess<csv::Stamps> stamps = strongest->stamps;
+  for (const std::size_t i : kind) {
+    for (SurveyedMeter& meter : exports[i].meters) {
+      if (!is_of_rows(meter) || meter.stamps_weight == kCertainStamps) continue;
+      if (meter.stamps.value != agreed) {
+        const auto shift = agreed == csv::Stamps::end ? -meter.interval : meter.interval;
+        meter.span = {meter.span.begin + shift, meter.span.end + shift};
+      }
+      meter.stamps = stamps;
+    }
+  }
+}
+
+void agree_on_flags(std::span<SurveyedExport> exports, const Kind& kind) {
+  std::string column;
+  std::set<std::string> missing;
+  std::set<std::string> estimated;
+  for (const std::size_t i : kind) {
+    const table::TableShape& shape = exports[i].table->shape;
+    if (!shape.flag_column.empty()) column = shape.flag_column;
+    missing.insert(shape.missing_flags.begin(), shape.missing_flags.end());
+    estimated.insert(shape.estimated_flags.begin(), shape.estimated_flags.end());
+  }
+  if (column.empty()) return;
+  for (const std::string& flag : missing) estimated.erase(flag);
+  for (const std::size_t i : kind) {
+    table::TableShape& shape = exports[i].table->shape;
+    const bool has_it = exports[i].table->flag_column == column || shape.flag_column == column;
+    if (!has_it) return;  // a file without the column cannot be read with it
+  }
+  for (const std::size_t i : kind) {
+    table::TableShape& shape = exports[i].table->shape;
+    shape.flag_column = column;
+    shape.missing_flags.assign(missing.begin(), missing.end());
+    shape.estimated_flags.assign(estimated.begin(), estimated.end());
+  }
+}
+
+}  // namespace
+
+std::vector<std::optional<SurveyHints>> hints_of_others(
+    std::span<const SurveyedExport> exports, std::span<const SurveyHints> hints,
+    const std::optional<metering::LocalCalendar>& calendar) {
+  std::vector<std::optional<SurveyHints>> more(exports.size());
+  const auto hint = [&](std::size_t i) -> SurveyHints& {
+    if (!more[i]) more[i] = hints[i];
+    return *more[i];
+  };
+  for (const Kind& kind : kinds_of(exports)) {
+    if (kind.size() < 2 || !exports[kind.front()].table) continue;
+    const auto dates = certain_value<table::TimeFormat>(
+        exports, kind, [](const table::TableGuess& guess) { return !guess.is_time_format_open; },
+        [](const table::TableGuess& guess) { return guess.shape.time_format; });
+    const auto decimal = certain_value<char>(
+        exports, kind,
+        [](const table::TableGuess& guess) { return guess.decimal_because.starts_with("as in"); },
+        [](const table::TableGuess& guess) { return guess.shape.decimal; });
+    std::string because;
+    const auto clock = calendar && hints[kind.front()].clock.empty()
+                           ? fixed_clock_of(exports, kind, *calendar, because)
+                           : std::nullopt;
+    for (const std::size_t i : kind) {
+      const table::TableGuess& guess = *exports[i].table;
+      if (dates && guess.is_time_format_open) hint(i).table.dates = *dates;
+      if (decimal && guess.shape.decimal != *decimal) hint(i).table.decimal = *decimal;
+      if (clock) {
+        hint(i).clock = *clock;
+        hint(i).clock_because = because;
+      }
+    }
+  }
+  return more;
+}
+
+void agree(std::span<SurveyedExport> exports) {
+  for (const Kind& kind : kinds_of(exports)) {
+    if (kind.size() < 2 || !exports[kind.front()].table) continue;
+    agree_on_stamps(exports, kind);
+    agree_on_flags(exports, kind);
+  }
+}
+
+}  // namespace recald::daemon
