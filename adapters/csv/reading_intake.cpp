@@ -37,6 +37,18 @@ std::vector<Instant> stamps_of(const Rows& rows, std::size_t count, Stamp stamp)
   return stamps;
 }
 
+/// Samples a little late or early come at the ends of intervals.
+void put_on_grid(std::vector<metering::RegisterSample>& samples, seconds interval) {
+  constexpr seconds kBesideMax{120};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const seconds late = samples[i].time.time_since_epoch() % interval;
+    const seconds beside = 2 * late > interval ? late - interval : late;
+    if (std::chrono::abs(beside) > std::min(kBesideMax, interval / kToleranceShare)) continue;
+    const Instant time = samples[i].time - beside;
+    if (i == 0 || time > samples[i - 1].time) samples[i].time = time;
+  }
+}
+
 /// By more than intervals of clocks that run fast or slow are.
 bool is_longer(seconds step, seconds interval) { return 10 * step > 11 * interval; }
 
@@ -543,6 +555,8 @@ void ReadingIntake::finish_counter(IntakeMeter& meter) {
   if (sink_.on_meter) sink_.on_meter(shown);
   metering::CounterSettings settings = *meter.rows.counter;
   settings.digit_kWh = meter.conversion.factor * meter.rows.multiplier;
+  // A register that is read a little after midnight still shows the day before.
+  if (settings.resets != metering::Resets::never) put_on_grid(meter.samples, shown.interval);
   const auto samples = metering::with_rests(std::move(meter.samples));
   for (const Reading& reading :
        metering::readings_from_register(shown.meter, samples, shown.interval, settings,

@@ -447,25 +447,23 @@ class TableReader {
   }
 
   void count_change(const TableRow& row, ClockReader::Hour hour, Instant clock) {
-    const bool has_value = std::ranges::any_of(value_, [&](std::size_t column) {
-      return parse_cell(cell(row, column), shape_.decimal).value_or(0.0) != 0.0;
-    });
-    if (!has_value) return;
+    bool has_number = false;
+    bool has_value = false;
+    for (const std::size_t column : value_) {
+      const auto number = parse_cell(cell(row, column), shape_.decimal);
+      has_number = has_number || number.has_value();
+      has_value = has_value || number.value_or(0.0) != 0.0;
+    }
+    if (hour == ClockReader::Hour::skipped && !has_number) return;
     ClockChange& change =
         facts_.changes[metering::Day{std::chrono::floor<std::chrono::days>(clock)}];
-    switch (hour) {
-      case ClockReader::Hour::skipped:
-        ++change.skipped;
-        break;
-      case ClockReader::Hour::first:
-        ++change.first;
-        break;
-      case ClockReader::Hour::second:
-        ++change.second;
-        break;
-      case ClockReader::Hour::usual:
-        break;
-    }
+    const auto add = [hour](ClockChange::Counts& counts) {
+      if (hour == ClockReader::Hour::skipped) ++counts.skipped;
+      if (hour == ClockReader::Hour::first) ++counts.first;
+      if (hour == ClockReader::Hour::second) ++counts.second;
+    };
+    add(change.rows);
+    if (has_value) add(change.values);
   }
 
   /// The same letters stand for zones on several continents.

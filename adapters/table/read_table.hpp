@@ -23,12 +23,17 @@ namespace recald::table {
     const std::filesystem::path& file, const TableShape& shape,
     const metering::LocalCalendar* calendar = nullptr);
 
-/// The rows of a day on which the clock changes, if they have a value that is not zero: some
-/// programs fill an hour that was never measured.
+/// The rows of a day on which the clock changes.
 struct ClockChange {
-  std::uint64_t skipped = 0;  ///< In the hour that the clock skips …
-  std::uint64_t first = 0;    ///< … in the one that it shows twice, the first time …
-  std::uint64_t second = 0;   ///< … and the second.
+  struct Counts {
+    std::uint64_t skipped = 0;  ///< In the hour that the clock skips …
+    std::uint64_t first = 0;    ///< … in the one that it shows twice, the first time …
+    std::uint64_t second = 0;   ///< … and the second.
+  };
+  /// Rows; those in the hour that is skipped only if they have a number.
+  Counts rows;
+  /// Those with a value that is not zero: some programs fill an hour that was never measured.
+  Counts values;
 };
 
 /// What was found out about clocks and flags while a table was read.

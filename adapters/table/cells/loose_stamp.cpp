@@ -310,6 +310,18 @@ std::optional<WrittenClock> parse_clock_loosely(std::string_view text) {
   return length > seconds{0} && length <= kRangeMax ? std::optional{clock} : std::nullopt;
 }
 
+bool says_winter_time(std::string_view header) {
+  constexpr std::array<std::string_view, 20> kWords{
+      " standard time ",  " winter time ",      " wintertime ",    " winterzeit ",
+      " normalzeit ",     " heure d hiver ",    " heure hiver ",   " heure normale ",
+      " heure standard ", " hora de invierno ", " hora estandar ", " hora de inverno ",
+      " hora padrao ",    " ora solare ",       " wintertijd ",    " standaardtijd ",
+      " vintertid ",      " normaltid ",        " talviaika ",     " czas zimowy "};
+  const std::string words = folded(header);
+  return std::any_of(kWords.begin(), kWords.end(),
+                     [&](std::string_view word) { return words.find(word) != std::string::npos; });
+}
+
 std::optional<seconds> offset_said(std::string_view header) {
   const std::string words = folded(header);
   const std::string lower = to_lower(header);

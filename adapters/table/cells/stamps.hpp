@@ -61,6 +61,9 @@ struct WrittenClock {
 /// "14:15", "2:15:00 PM", "24:00", "00:00 - 00:15"; no hour alone, nothing with an offset.
 [[nodiscard]] std::optional<std::chrono::seconds> parse_time_of_day(std::string_view text);
 
+/// Whether a header says that its times stay on winter time: "standard time", "Winterzeit".
+[[nodiscard]] bool says_winter_time(std::string_view header);
+
 /// The offset that a header says its times have: 0 of "timestamp_utc", an hour of "Zeit (UTC+1)".
 [[nodiscard]] std::optional<std::chrono::seconds> offset_said(std::string_view header);
 

@@ -131,7 +131,8 @@ void read_peak(TomlReader table, metering::PeakRule& rule) {
 }
 
 std::optional<metering::CounterSettings> read_counter(TomlReader table,
-                                                      const std::optional<double>& rated_kW) {
+                                                      const std::optional<double>& rated_kW,
+                                                      std::string& reset_zone) {
   if (!rated_kW) {
     table.problem("a cumulative counter needs the meter's 'rated_kW', to tell a jump from a load");
   }
@@ -140,6 +141,13 @@ std::optional<metering::CounterSettings> read_counter(TomlReader table,
   const double resolution = table.number_or("resolution", 0.0, kNotNegative);
   const std::string unit = table.text_or("unit", "kWh");
   const auto resets = table.word("resets", {"day", "month"});
+  reset_zone = table.text_or("reset_zone", "");
+  if (!reset_zone.empty() && !metering::LocalCalendar::open(reset_zone)) {
+    table.problem_at("reset_zone",
+                     fmt::format("'reset_zone' is \"{}\", no time zone; it is one like "
+                                 "\"Etc/UTC\"",
+                                 reset_zone));
+  }
   const auto conversion = metering::find_unit(unit, metering::Utility::electricity, {});
   if (!conversion || conversion->is_rate) {
     table.problem_at(
@@ -307,7 +315,12 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   }
   if (auto peak = table.table("peak")) read_peak(*peak, meter.peak);
   if (auto counter = table.table("counter"))
-    config.counter = read_counter(*counter, meter.rated_kW);
+    config.counter = read_counter(*counter, meter.rated_kW, config.reset_zone);
+  if (!config.reset_zone.empty() && config.files.empty()) {
+    table.problem_at("counter",
+                     "'reset_zone' is of registers in files; a live one is set to zero at "
+                     "the site's midnight");
+  }
   if (config.counter) {
     // What is delivered back is counted down.
     config.counter->runs_back = meter.negative_is_valid;

@@ -68,6 +68,7 @@ struct MeterConfig {
   double multiplier = 1.0;
   metering::UnitFactors units;
   std::optional<metering::CounterSettings> counter;
+  std::string reset_zone;  ///< By whose midnights it sets itself to zero; empty: the site's.
   std::optional<model::MeterMap> end_uses;  ///< Absent: as usual for the utility.
   std::optional<LiveMeterConfig> live;      ///< source = "modbus".
   /// source = "mqtt"; or "http" with a counter, whose samples are sent, from no topic.

@@ -23,11 +23,11 @@ using metering::ClosedMonth;
 using metering::Instant;
 using metering::TimeSpan;
 
-/// By the clock of the meter a register is set to zero.
 metering::ResetTimes resets_of(const MeterConfig& config, const metering::LocalCalendar& site) {
   if (!config.counter) return {};
-  const std::string& zone = config.table ? config.table->shape.timezone : "";
-  const auto own = zone.empty() ? site : metering::LocalCalendar::open(zone).value_or(site);
+  const auto own = config.reset_zone.empty()
+                       ? site
+                       : metering::LocalCalendar::open(config.reset_zone).value_or(site);
   return metering::reset_times(config.counter->resets, own);
 }
 

@@ -49,6 +49,12 @@ std::optional<T> certain_value(std::span<const SurveyedExport> exports, const Ki
   return agreed;
 }
 
+void take_larger(table::ClockChange::Counts& known, const table::ClockChange::Counts& counts) {
+  known.skipped = std::max(known.skipped, counts.skipped);
+  known.first = std::max(known.first, counts.first);
+  known.second = std::max(known.second, counts.second);
+}
+
 /// A clock that stays on winter time, by the changes of all files together.
 std::optional<std::string> fixed_clock_of(std::span<const SurveyedExport> exports, const Kind& kind,
                                           const metering::LocalCalendar& calendar,
@@ -61,9 +67,8 @@ std::optional<std::string> fixed_clock_of(std::span<const SurveyedExport> export
     if (one.table->has_offsets || !one.table->shape.timezone.empty()) return {};
     for (const auto& [day, change] : one.clock.changes) {
       table::ClockChange& known = facts.changes[day];
-      known.skipped = std::max(known.skipped, change.skipped);
-      known.first = std::max(known.first, change.first);
-      known.second = std::max(known.second, change.second);
+      take_larger(known.rows, change.rows);
+      take_larger(known.values, change.values);
     }
     facts.put_back.insert(one.clock.put_back.begin(), one.clock.put_back.end());
     for (const SurveyedMeter& meter : one.meters) {

@@ -24,6 +24,33 @@ int spring_changes(const metering::TimeSpan& span, const metering::LocalCalendar
   return changes;
 }
 
+struct ChangeDays {
+  metering::Day spring;
+  metering::Day autumn;
+};
+
+std::optional<ChangeDays> days_of_fixed_clock(
+    const table::ClockFacts& facts, const metering::TimeSpan& span, double per_hour,
+    const metering::LocalCalendar& calendar,
+    table::ClockChange::Counts table::ClockChange::*counts_of) {
+  constexpr double kMost = 0.75;  // of an hour's stamps
+  int springs = 0;
+  std::optional<metering::Day> spring;
+  std::optional<metering::Day> autumn;
+  if (!facts.put_back.empty() && other_clock(facts, calendar)) return {};
+  for (const auto& [day, change] : facts.changes) {
+    if (change.rows.second > 0 || facts.put_back.contains(day)) return {};
+    const table::ClockChange::Counts& counts = change.*counts_of;
+    if (static_cast<double>(counts.skipped) >= kMost * per_hour) {
+      ++springs;
+      spring = day;
+    }
+    if (static_cast<double>(counts.first) >= kMost * per_hour) autumn = day;
+  }
+  if (!spring || !autumn || springs < spring_changes(span, calendar)) return {};
+  return ChangeDays{*spring, *autumn};
+}
+
 }  // namespace
 
 std::optional<std::string> zone_of_offset(seconds offset) {
@@ -42,28 +69,23 @@ std::optional<std::string> fixed_zone(const metering::LocalCalendar& calendar, I
 std::optional<std::string> fixed_clock_because(const table::ClockFacts& facts,
                                                const metering::TimeSpan& span, double per_hour,
                                                const metering::LocalCalendar& calendar) {
-  constexpr double kMost = 0.75;  // of an hour's stamps
-  int springs = 0;
-  int autumns = 0;
-  const metering::Day* spring = nullptr;
-  const metering::Day* autumn = nullptr;
-  if (!facts.put_back.empty() && other_clock(facts, calendar)) return {};
-  for (const auto& [day, change] : facts.changes) {
-    if (change.second > 0 || facts.put_back.contains(day)) return {};
-    if (static_cast<double>(change.skipped) >= kMost * per_hour) {
-      ++springs;
-      spring = &day;
-    }
-    if (static_cast<double>(change.first) >= kMost * per_hour) {
-      ++autumns;
-      autumn = &day;
-    }
-  }
-  if (springs == 0 || autumns == 0 || springs < spring_changes(span, calendar)) return {};
+  const auto days =
+      days_of_fixed_clock(facts, span, per_hour, calendar, &table::ClockChange::values);
+  if (!days) return {};
   return fmt::format(
       "it has values in the hour of {} that {} jumps over, and no hour twice on {}: its clock "
       "stays on winter time",
-      metering::to_string(*spring), calendar.zone_name(), metering::to_string(*autumn));
+      metering::to_string(days->spring), calendar.zone_name(), metering::to_string(days->autumn));
+}
+
+std::optional<std::string> fixed_clock_by_rows(const table::ClockFacts& facts,
+                                               const metering::TimeSpan& span, double per_hour,
+                                               const metering::LocalCalendar& calendar) {
+  const auto days = days_of_fixed_clock(facts, span, per_hour, calendar, &table::ClockChange::rows);
+  if (!days) return {};
+  return fmt::format("it has rows in the hour of {} that {} jumps over, and no hour twice on {}",
+                     metering::to_string(days->spring), calendar.zone_name(),
+                     metering::to_string(days->autumn));
 }
 
 }  // namespace recald::daemon

@@ -28,4 +28,9 @@ namespace recald::daemon {
     const table::ClockFacts& facts, const metering::TimeSpan& span, double per_hour,
     const metering::LocalCalendar& calendar);
 
+/// The same by rows, whatever their values; only a number counts in the hour that is skipped.
+[[nodiscard]] std::optional<std::string> fixed_clock_by_rows(
+    const table::ClockFacts& facts, const metering::TimeSpan& span, double per_hour,
+    const metering::LocalCalendar& calendar);
+
 }  // namespace recald::daemon

@@ -294,7 +294,10 @@ Result<WholeFile> read_whole(SurveyedExport& survey, const metering::LocalCalend
       rows.counter = {.rated_kW = meter.as_register.rated_kW,
                       .runs_back = meter.as_register.runs_back,
                       .resets = meter.as_register.resets};
-      rows.resets = metering::reset_times(meter.as_register.resets, calendar);
+      const std::string& zone = meter.as_register.reset_zone;
+      rows.resets = metering::reset_times(
+          meter.as_register.resets,
+          zone.empty() ? calendar : metering::LocalCalendar::open(zone).value_or(calendar));
     }
     if (meter.interval > seconds{0}) rows.interval = meter.interval;
     const bool is_said = survey.table && survey.table->shape.unit_column.empty();
@@ -405,7 +408,9 @@ bool learn_from_rows(SurveyedExport& survey, const metering::LocalCalendar& cale
 /// A clock that is never changed, if the stamps show it on more than one day.
 Result<void> try_fixed_clock(SurveyedExport& survey, const metering::LocalCalendar& calendar,
                              WholeFile& whole) {
-  if (whole.clock.skipped == 0 || !survey.table->shape.timezone.empty()) return {};
+  if (!survey.table->shape.timezone.empty()) return {};
+  const bool says_winter = table::says_winter_time(survey.table->shape.time_column);
+  if (whole.clock.skipped == 0 && !says_winter) return {};
   std::optional<metering::TimeSpan> span;
   double per_hour = 1.0;
   for (const csv::MeterReport& meter : whole.report.meters) {
@@ -415,7 +420,8 @@ Result<void> try_fixed_clock(SurveyedExport& survey, const metering::LocalCalend
   }
   if (!span) return {};
   const auto zone = fixed_zone(calendar, span->begin);
-  const auto because = fixed_clock_because(whole.clock, *span, per_hour, calendar);
+  auto because = fixed_clock_because(whole.clock, *span, per_hour, calendar);
+  if (says_winter) because = "by the time column's name";
   const std::string file = survey.files.front().filename().string();
   if (!zone || !because) {
     survey.notes.push_back(fmt::format(
@@ -527,11 +533,29 @@ StampsGuess guess_stamps(const SurveyedExport& survey, const metering::TimeSpan&
   return {{csv::Stamps::start, "guessed; a file of whole days would decide"}, 0};
 }
 
+/// A question where rows are those of a clock that stays on winter time, and their values are zero
+/// or blank.
+void ask_for_winter_time(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
+  if (survey.meters.empty()) return;
+  const SurveyedMeter& meter = survey.meters.front();
+  const double per_hour = 3600.0 / static_cast<double>(meter.interval.count());
+  const auto because = fixed_clock_by_rows(survey.clock, meter.span, per_hour, calendar);
+  const auto zone = fixed_zone(calendar, meter.span.begin);
+  if (!because || !zone) return;
+  survey.questions.push_back(
+      {.words = fmt::format("'{}': {}, but these rows have no value or zero; its clock may stay on "
+                            "winter time.",
+                            survey.files.front().string(), *because),
+       .option = "--clock",
+       .subject = "",
+       .answers = {*zone, calendar.zone_name()}});
+}
+
 /// A question where the file's clock is not that of the building's zone.
 void ask_for_clock(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
   if (!survey.table || !survey.table->shape.timezone.empty()) return;
   const auto other = other_clock(survey.clock, calendar);
-  if (!other) return;
+  if (!other) return ask_for_winter_time(survey, calendar);
   std::vector<std::string> answers = other->zones;
   constexpr std::size_t kShown = 4;
   if (answers.size() > kShown) answers.resize(kShown);
@@ -591,15 +615,6 @@ void describe_meter(SurveyedExport& survey, SurveyedMeter& meter, const csv::Met
     }
     return;
   }
-  const std::string& zone = meter.as_register.reset_zone;
-  // Where stamps say their offset, the zone says by whose midnights a register is set to zero.
-  const bool may_have_zone = survey.table && survey.table->has_offsets;
-  if (!zone.empty() && may_have_zone && survey.table->shape.timezone.empty()) {
-    survey.table->shape.timezone = zone;
-    survey.clock_because = "by whose midnights its register falls to zero";
-  } else if (!zone.empty()) {
-    meter.as_register.resets = metering::Resets::never;
-  }
   for (const RegisterStep& step : meter.as_register.exchanges) {
     note(
         fmt::format("its register went from {:.1f} to {:.1f} kWh on {}: exchanged, or set to "
@@ -635,7 +650,10 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     meter.refused = report.refused;
     meter.span = *report.span;
     meter.interval = report.shown.interval;
-    const StampsGuess stamps = guess_stamps(survey, meter.span, meter.interval, own_clock);
+    // A clock of its own, or the building's, may show days from midnight to midnight.
+    StampsGuess stamps = guess_stamps(survey, meter.span, meter.interval, own_clock);
+    const auto by_site = guess_stamps(survey, meter.span, meter.interval, calendar);
+    if (by_site.weight > stamps.weight) stamps = by_site;
     meter.stamps = stamps.stamps;
     meter.stamps_weight = stamps.weight;
     if (meter.stamps.value == csv::Stamps::end) {

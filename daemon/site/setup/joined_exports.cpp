@@ -52,7 +52,9 @@ bool continues(const SurveyedMeter& later, const SurveyedMeter& earlier) {
   constexpr int kShort = 4;  // times in the shorter of the two
   const auto common =
       std::min(later.span.end, earlier.span.end) - std::max(later.span.begin, earlier.span.begin);
-  if (kShort * common <= std::min(later.span.length(), earlier.span.length())) return true;
+  constexpr auto kFewDays = std::chrono::hours{72};
+  const auto shorter = std::min(later.span.length(), earlier.span.length());
+  if (common <= kFewDays || kShort * common <= shorter) return true;
   if (const auto alike = share_alike(later.samples, earlier.samples)) {
     return *alike >= kCorrectedMax;
   }

@@ -252,7 +252,9 @@ void write_limits(const SurveyedMeter& meter, Lines& lines) {
                                     : shown.resets == metering::Resets::monthly
                                         ? ", resets = \"month\""
                                         : "";
-    lines.key("counter", fmt::format("{{ unit = \"kWh\"{} }}", resets),
+    const std::string zone =
+        shown.reset_zone.empty() ? "" : ", reset_zone = " + toml_text(shown.reset_zone);
+    lines.key("counter", fmt::format("{{ unit = \"kWh\"{}{} }}", resets, zone),
               shown.because.empty() ? "as the feed says" : shown.because);
     if (shown.runs_back) lines.key("negative_is_valid", "true", "it counts back what is delivered");
     return;
