@@ -119,8 +119,10 @@ std::optional<ClockFormat> LabelledDays::format_on(const Labels& labels,
   if (change.extra > 0 && rows(change.usual + 1) > 0) return ClockFormat::interval_number;
   // What sets a label apart: it is missing or empty, or has twice the rows of the day's last one.
   std::size_t found = 0;
+  bool lacks_rows = false;  // then blanks and zeros say nothing
+  for (int label = 1; label <= change.usual; ++label) lacks_rows = lacks_rows || rows(label) == 0;
   const auto is_apart = [&](int label) {
-    return change.extra < 0 ? rows(label) == 0 || !is_filled(label)
+    return change.extra < 0 ? rows(label) == 0 || (!lacks_rows && !is_filled(label))
                             : rows(label) >= 2 * std::max<int>(1, rows(change.usual));
   };
   const auto is_just = [&](const Range& range) {

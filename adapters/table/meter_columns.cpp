@@ -17,6 +17,14 @@ std::string_view in_last_brackets(std::string_view text) {
   return csv::trimmed(text.substr(begin + 1, end - begin - 1));
 }
 
+/// "p/kWh", "ct / kWh": what a unit of energy costs.
+bool is_unit_price(std::string_view unit) {
+  const std::size_t slash = unit.rfind('/');
+  if (slash == std::string_view::npos || slash == 0) return false;
+  return is_unit(csv::trimmed(unit.substr(slash + 1))) &&
+         !is_unit(csv::trimmed(unit.substr(0, slash)));
+}
+
 /// The numbers of a column that has no unit: of rows, of meters, of parts of a date, of states.
 std::string_view why_no_amounts(std::string_view header, const ColumnKinds& kinds) {
   const Meanings meanings = meanings_of(header);
@@ -46,6 +54,9 @@ std::string_view why_no_meter(std::string_view header, std::string_view below,
   if (meanings.has(Meaning::cost) && !parts.is_unit_in_brackets) return "money";
   if (meanings.has(Meaning::emission)) return "emissions";
   const std::string_view inside = in_last_brackets(below);
+  if (is_unit_price(in_last_brackets(header)) || is_unit_price(inside.empty() ? below : inside)) {
+    return "money";
+  }
   if (is_unit_of_others(inside.empty() ? below : inside)) return "no energy";
   const bool has_unit =
       !parts.unit.empty() || kinds.with_unit > 0 || !split_unit(below).unit.empty();
@@ -54,6 +65,11 @@ std::string_view why_no_meter(std::string_view header, std::string_view below,
     return "no energy";
   }
   if (kinds.counts_rows()) return "the number of a row";
+  // What has five figures or more and stays the same is a number of something.
+  constexpr std::size_t kFiguresMin = 5;
+  const bool is_one_number = kinds.is_whole && kinds.filled > 100 && kinds.texts.size() == 1 &&
+                             kinds.texts.begin()->size() >= kFiguresMin;
+  if (is_one_number && !meanings.has(Meaning::use)) return "an identifier";
   const bool may_be_amounts = meanings.has(Meaning::use) || !kinds.is_whole;
   return may_be_amounts ? std::string_view{} : why_no_amounts(header, kinds);
 }

@@ -134,7 +134,8 @@ def make_register(rng, meter, clock, kinds):
         resolution = rng.choice([100, 1000])
         if sum(load.amounts) > 200 * resolution * len(load.amounts) / 96:
             readings = [reading // resolution * resolution for reading in readings]
-            meter.decimals = 1 if resolution == 100 else 0
+            usual = number_of(0, meter.unit, 3600).decimals  # write a whole watt-hour
+            meter.decimals = max(0, usual - (2 if resolution == 100 else 3))
             meter.slack_kWh += 2 * resolution / 1000
             meter.has_shape = False
     if kind != "plain":

@@ -88,7 +88,7 @@ constexpr std::array kWordsOf{
         " customer| contract| premise| service point| service agreement| id | identif|"
         " uuid |nummer |numer | number |numero |numeri | kunde| vertrag| contrat|"
         " client | cliente | tunnus|tunnus | contrato| contratto| klant| kund | asiakas| sopimus|"
-        " klient| umow| matricola| nr | address| postcode | zip "},
+        " klient| umow| avtal| matricola| nr | address| postcode | zip "},
     WordsOf{Meaning::tariff,
             " tariff| tarif| tarief| taryfa| taksa| tou | rate | band | fascia| discrimina|"
             " strefa| peak | piek | season"},
@@ -257,6 +257,7 @@ Meanings meanings_of(std::string_view header) {
   for (const WordsOf& one : kWordsOf) {
     if (has_word_of(text, one.words)) found.add(one.meaning);
   }
+  if (text == " a ") found.add(Meaning::to);  // French and Portuguese
   if (text.size() > 2) {
     const std::string_view words = std::string_view{text}.substr(1, text.size() - 2);
     for (const std::string_view word :

@@ -101,6 +101,7 @@ tl::expected<std::vector<SurveyedExport>, int> survey_all(
     if (!survey) return tl::unexpected(console.fail(survey.error()));
     exports[i] = std::move(*survey);
   }
+  if (calendar) ask_together(exports, hints, *calendar);
   return exports;
 }
 

@@ -171,6 +171,8 @@ bool RegisterEvidence::may_rest() const {
 
 RegisterVerdict RegisterEvidence::verdict(const LocalCalendar& calendar) const {
   RegisterVerdict verdict;
+  verdict.rises = rises_;
+  verdict.falls = falls_;
   verdict.rated_kW = round_up(kRatedMargin * rates_kW_.confirmed());
   if (rises_ < kRisesMin) return verdict;
   // What falls as often as it rises is looked at no further.

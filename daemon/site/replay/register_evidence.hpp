@@ -24,6 +24,8 @@ struct RegisterVerdict {
   /// By whose midnights it is set to zero, if that is not the calendar that was asked: "Etc/GMT-1".
   std::string reset_zone = {};
   bool runs_back = false;
+  std::uint64_t rises = 0;
+  std::uint64_t falls = 0;
   /// Half as much again as it ever rose by: the most that its load can draw. Never from a rise that
   /// stands alone, for that is an exchange or a misread value.
   double rated_kW = 0.0;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "daemon/site/setup/clock_evidence.hpp"
 
@@ -56,12 +58,16 @@ void take_larger(table::ClockChange::Counts& known, const table::ClockChange::Co
 }
 
 /// A clock that stays on winter time, by the changes of all files together.
-std::optional<std::string> fixed_clock_of(std::span<const SurveyedExport> exports, const Kind& kind,
-                                          const metering::LocalCalendar& calendar,
-                                          std::string& because) {
+struct JoinedClock {
   table::ClockFacts facts;
   std::optional<metering::TimeSpan> span;
   double per_hour = 1.0;
+};
+
+/// What all files of a kind show; nothing where a clock is known or stamps have offsets.
+std::optional<JoinedClock> joined_clock(std::span<const SurveyedExport> exports, const Kind& kind) {
+  JoinedClock joined;
+  auto& [facts, span, per_hour] = joined;
   for (const std::size_t i : kind) {
     const SurveyedExport& one = exports[i];
     if (one.table->has_offsets || !one.table->shape.timezone.empty()) return {};
@@ -78,14 +84,68 @@ std::optional<std::string> fixed_clock_of(std::span<const SurveyedExport> export
       span->end = std::max(span->end, meter.span.end);
     }
   }
-  if (!span) return {};
-  const auto found = fixed_clock_because(facts, *span, per_hour, calendar);
-  if (!found) return {};
-  because = *found;
-  return fixed_zone(calendar, span->begin);
+  return span ? std::optional{joined} : std::nullopt;
 }
 
 bool is_of_rows(const SurveyedMeter& meter) { return !meter.is_register; }
+
+using MeterKey = std::pair<std::string, std::string>;  // row and column
+
+/// Registers of a kind, as the file shows them that has most of each.
+std::map<MeterKey, RegisterVerdict> registers_of(std::span<const SurveyedExport> exports,
+                                                 const Kind& kind) {
+  std::map<MeterKey, RegisterVerdict> known;
+  for (const std::size_t i : kind) {
+    for (const SurveyedMeter& meter : exports[i].meters) {
+      const RegisterVerdict& shown = meter.as_register;
+      if (!meter.is_register || !shown.is_register) continue;
+      const auto [at, is_new] = known.try_emplace({meter.name_in_file, meter.column}, shown);
+      const double rated_kW = std::max(at->second.rated_kW, shown.rated_kW);
+      if (shown.rises + shown.falls > at->second.rises + at->second.falls) at->second = shown;
+      at->second.rated_kW = rated_kW;
+    }
+  }
+  return known;
+}
+
+/// Whether a file is too short to contradict what another shows of the register.
+bool may_be_register(const SurveyedMeter& meter, const RegisterVerdict& shown) {
+  constexpr std::uint64_t kFewFalls = 3;
+  if (meter.is_told_register) return false;
+  if (meter.is_register) {
+    return meter.as_register.resets != shown.resets && meter.as_register.falls <= kFewFalls;
+  }
+  return meter.as_register.falls <= kFewFalls;
+}
+
+/// What a clock column counts, as the days of 23 and 25 hours of some files show.
+std::optional<table::ClockFormat> clock_format_of(std::span<const SurveyedExport> exports,
+                                                  const Kind& kind) {
+  std::optional<table::ClockFormat> agreed;
+  for (const std::size_t i : kind) {
+    if (!exports[i].clock_format_because.starts_with("as on")) continue;
+    const table::ClockFormat shown = exports[i].table->shape.clock_format;
+    if (agreed && *agreed != shown) return {};
+    agreed = shown;
+  }
+  return agreed;
+}
+
+/// Gives a file hints where it has a clock column that counts, or registers.
+template <class Hint>
+void hint_of_rows(const SurveyedExport& one, const std::map<MeterKey, RegisterVerdict>& registers,
+                  std::optional<table::ClockFormat> clock_format, Hint hint) {
+  if (clock_format && one.table->labels_a_day > 0 &&
+      one.table->shape.clock_format != *clock_format) {
+    hint().clock_format = *clock_format;
+  }
+  for (const SurveyedMeter& meter : one.meters) {
+    const MeterKey key{meter.name_in_file, meter.column};
+    const auto known = registers.find(key);
+    if (known == registers.end() || !may_be_register(meter, known->second)) continue;
+    hint().registers[key] = known->second;
+  }
+}
 
 void agree_on_stamps(std::span<SurveyedExport> exports, const Kind& kind) {
   std::array<int, 2> weights{};  // of starts and ends
@@ -163,21 +223,40 @@ std::vector<std::optional<SurveyHints>> hints_of_others(
         exports, kind,
         [](const table::TableGuess& guess) { return guess.decimal_because.starts_with("as in"); },
         [](const table::TableGuess& guess) { return guess.shape.decimal; });
-    std::string because;
-    const auto clock = calendar && hints[kind.front()].clock.empty()
-                           ? fixed_clock_of(exports, kind, *calendar, because)
-                           : std::nullopt;
+    std::optional<std::string> because;
+    std::optional<std::string> clock;
+    const auto joined = joined_clock(exports, kind);
+    if (joined && calendar && hints[kind.front()].clock.empty()) {
+      because = fixed_clock_because(joined->facts, *joined->span, joined->per_hour, *calendar);
+      if (because) clock = fixed_zone(*calendar, joined->span->begin);
+    }
+    const auto registers = registers_of(exports, kind);
+    const auto clock_format = clock_format_of(exports, kind);
     for (const std::size_t i : kind) {
+      hint_of_rows(exports[i], registers, clock_format, [&]() -> SurveyHints& { return hint(i); });
       const table::TableGuess& guess = *exports[i].table;
       if (dates && guess.is_time_format_open) hint(i).table.dates = *dates;
       if (decimal && guess.shape.decimal != *decimal) hint(i).table.decimal = *decimal;
       if (clock) {
         hint(i).clock = *clock;
-        hint(i).clock_because = because;
+        hint(i).clock_because = *because;
       }
     }
   }
   return more;
+}
+
+void ask_together(std::span<SurveyedExport> exports, std::span<const SurveyHints> hints,
+                  const metering::LocalCalendar& calendar) {
+  for (const Kind& kind : kinds_of(exports)) {
+    if (kind.size() < 2 || !exports[kind.front()].table) continue;
+    const auto joined = joined_clock(exports, kind);
+    if (!joined || !hints[kind.front()].clock.empty()) continue;
+    SurveyedExport& first = exports[kind.front()];
+    const auto question = winter_time_question(first.files.front(), joined->facts, *joined->span,
+                                               joined->per_hour, calendar);
+    if (question) first.questions.push_back(*question);
+  }
 }
 
 void agree(std::span<SurveyedExport> exports) {

@@ -18,6 +18,10 @@ namespace recald::daemon {
     std::span<const SurveyedExport> exports, std::span<const SurveyHints> hints,
     const std::optional<metering::LocalCalendar>& calendar);
 
+/// Adds the questions that only show in several files together.
+void ask_together(std::span<SurveyedExport> exports, std::span<const SurveyHints> hints,
+                  const metering::LocalCalendar& calendar);
+
 /// Gives all of a kind the stamps that most evidence is for, and the flags that any of them has.
 void agree(std::span<SurveyedExport> exports);
 

@@ -88,4 +88,20 @@ std::optional<std::string> fixed_clock_by_rows(const table::ClockFacts& facts,
                      metering::to_string(days->autumn));
 }
 
+std::optional<OpenQuestion> winter_time_question(const std::filesystem::path& file,
+                                                 const table::ClockFacts& facts,
+                                                 const metering::TimeSpan& span, double per_hour,
+                                                 const metering::LocalCalendar& calendar) {
+  const auto because = fixed_clock_by_rows(facts, span, per_hour, calendar);
+  const auto zone = fixed_zone(calendar, span.begin);
+  if (!because || !zone) return {};
+  return OpenQuestion{
+      .words = fmt::format("'{}': {}, but these rows have no value or zero; its clock may stay on "
+                           "winter time.",
+                           file.string(), *because),
+      .option = "--clock",
+      .subject = "",
+      .answers = {*zone, calendar.zone_name()}};
+}
+
 }  // namespace recald::daemon

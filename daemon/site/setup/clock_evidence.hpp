@@ -2,11 +2,13 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "adapters/table/read_table.hpp"
 #include "core/metering/civil_time.hpp"
+#include "daemon/site/setup/survey_hints.hpp"
 
 namespace recald::daemon {
 
@@ -32,5 +34,11 @@ namespace recald::daemon {
 [[nodiscard]] std::optional<std::string> fixed_clock_by_rows(
     const table::ClockFacts& facts, const metering::TimeSpan& span, double per_hour,
     const metering::LocalCalendar& calendar);
+
+/// A question where rows are those of a clock that stays on winter time, and their values are zero
+/// or blank.
+[[nodiscard]] std::optional<OpenQuestion> winter_time_question(
+    const std::filesystem::path& file, const table::ClockFacts& facts,
+    const metering::TimeSpan& span, double per_hour, const metering::LocalCalendar& calendar);
 
 }  // namespace recald::daemon

@@ -378,6 +378,19 @@ bool take_resting_registers(SurveyedExport& survey, const WholeFile& whole) {
   return is_new;
 }
 
+/// What other files show of registers, where this one is too short to.
+bool take_registers_of_others(SurveyedExport& survey, const SurveyHints& hints) {
+  bool is_new = false;
+  for (SurveyedMeter& meter : survey.meters) {
+    const auto known = hints.registers.find({meter.name_in_file, meter.column});
+    if (known == hints.registers.end() || meter.is_told_register) continue;
+    meter.is_register = meter.is_told_register = is_new = true;
+    meter.as_register = known->second;
+    meter.as_register.exchanges.clear();
+  }
+  return is_new;
+}
+
 /// Meters that only show in their rows how they are to be read: registers, and values that come at
 /// longer steps later.
 /// @return whether there are any, so that the file is to be read again.
@@ -533,22 +546,13 @@ StampsGuess guess_stamps(const SurveyedExport& survey, const metering::TimeSpan&
   return {{csv::Stamps::start, "guessed; a file of whole days would decide"}, 0};
 }
 
-/// A question where rows are those of a clock that stays on winter time, and their values are zero
-/// or blank.
 void ask_for_winter_time(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
   if (survey.meters.empty()) return;
   const SurveyedMeter& meter = survey.meters.front();
   const double per_hour = 3600.0 / static_cast<double>(meter.interval.count());
-  const auto because = fixed_clock_by_rows(survey.clock, meter.span, per_hour, calendar);
-  const auto zone = fixed_zone(calendar, meter.span.begin);
-  if (!because || !zone) return;
-  survey.questions.push_back(
-      {.words = fmt::format("'{}': {}, but these rows have no value or zero; its clock may stay on "
-                            "winter time.",
-                            survey.files.front().string(), *because),
-       .option = "--clock",
-       .subject = "",
-       .answers = {*zone, calendar.zone_name()}});
+  const auto question =
+      winter_time_question(survey.files.front(), survey.clock, meter.span, per_hour, calendar);
+  if (question) survey.questions.push_back(*question);
 }
 
 /// A question where the file's clock is not that of the building's zone.
@@ -667,7 +671,8 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     const bool is_rate = unit && unit->is_rate;
     const bool was_read_as_register = meter.is_register && meter.as_register.is_register;
     const bool has_parts = !meter.further_names.empty() || !meter.further_columns.empty();
-    if (!was_read_as_register || (!has_parts && !watch.as_register.may_rest())) {
+    const bool may_judge = !has_parts && !meter.is_told_register && !watch.as_register.may_rest();
+    if (!was_read_as_register || may_judge) {
       meter.as_register = watch.as_register.verdict(calendar);
     }
     meter.is_register = !is_rate && (meter.is_register || meter.as_register.is_register);
@@ -924,14 +929,15 @@ void name_by_values(const table::TableGuess& guess, std::vector<SurveyedMeter>& 
 }
 
 /// What a clock column counts, which only the days of 23 and 25 hours show.
-Result<void> find_clock_format(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
+Result<void> find_clock_format(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                               std::optional<table::ClockFormat> told) {
   if (!survey.table || survey.table->labels_a_day == 0) return {};
   table::TableGuess& guess = *survey.table;
   std::vector<std::string> values;
   for (const table::GuessedColumn& value : guess.values) values.push_back(value.column);
   const auto rows = TRY(table::open_rows(survey.files.front(), guess.shape));
-  const auto labels =
-      TRY(table::read_clock_labels(*rows, guess.shape, values, calendar, guess.shape.clock_format));
+  const auto labels = TRY(table::read_clock_labels(*rows, guess.shape, values, calendar,
+                                                   told.value_or(guess.shape.clock_format)));
   const bool was_clock = guess.shape.clock_format == table::ClockFormat::time;
   guess.shape.clock_format = *labels.format;
   survey.clock_format_because = labels.because;
@@ -1133,7 +1139,8 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
     clock = TRY(metering::LocalCalendar::open("Etc/UTC"));
     if (survey->table) survey->utc_offset = first_offset(file, *survey->table);
   }
-  if (auto found = find_clock_format(*survey, *clock); !found) return about(file, found.error());
+  if (auto found = find_clock_format(*survey, *clock, hints.clock_format); !found)
+    return about(file, found.error());
   auto whole = read_whole(*survey, *clock);
   if (!whole) return about(file, whole.error());
   if (survey->table) {
@@ -1142,7 +1149,8 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
     }
   }
   const bool has_flags = learn_flags(*survey, *whole);
-  if (learn_from_rows(*survey, *clock, *whole) || has_flags) {
+  const bool has_registers = take_registers_of_others(*survey, hints);
+  if (learn_from_rows(*survey, *clock, *whole) || has_flags || has_registers) {
     whole = read_whole(*survey, *clock);
     if (!whole) return about(file, whole.error());
   }

@@ -16,12 +16,16 @@ namespace {
 
 bool is_guessed(const Guess<csv::Stamps>& stamps) { return stamps.because.starts_with("guessed"); }
 
+bool are_multiples(std::chrono::seconds a, std::chrono::seconds b) {
+  return std::max(a, b) % std::min(a, b) == std::chrono::seconds{0};
+}
+
 bool is_same_meter(const SurveyedMeter& a, const SurveyedMeter& b) {
   const bool is_called_alike = a.name == b.name || (a.is_named_by_file && b.is_named_by_file);
   return is_called_alike && a.name_in_file == b.name_in_file && a.column == b.column &&
          a.further_names == b.further_names && a.further_columns == b.further_columns &&
          a.unit.value == b.unit.value && a.utility.value == b.utility.value &&
-         a.interval == b.interval && a.is_register == b.is_register &&
+         are_multiples(a.interval, b.interval) && a.is_register == b.is_register &&
          (a.stamps.value == b.stamps.value || is_guessed(a.stamps) || is_guessed(b.stamps));
 }
 
@@ -83,12 +87,28 @@ void join(SurveyedMeter& meter, const SurveyedMeter& more) {
   mean(meter.negative_share, more.negative_share);
   if (is_guessed(meter.stamps)) meter.stamps = more.stamps;
   meter.as_register.rated_kW = std::max(meter.as_register.rated_kW, more.as_register.rated_kW);
+  if (meter.interval != more.interval) meter.is_of_other_steps = true;
+  meter.interval = std::max(meter.interval, more.interval);
   meter.grid_tolerance = std::max(meter.grid_tolerance, more.grid_tolerance);
   meter.readings += more.readings;
   meter.refused += more.refused;
   meter.span.begin = std::min(meter.span.begin, more.span.begin);
   meter.span.end = std::max(meter.span.end, more.span.end);
   for (const auto& [start, mean_kW] : more.samples.kept()) meter.samples.take(start, mean_kW);
+}
+
+/// That a meter's files come at different steps; empty: they do not.
+std::string step_note(const SurveyedExport& one, const SurveyedExport& more) {
+  for (std::size_t i = 0; i < one.meters.size(); ++i) {
+    const auto before = one.meters[i].interval;
+    const auto now = more.meters[i].interval;
+    if (before == now) continue;
+    return fmt::format(
+        "'{}' has {} every {} min, earlier files every {} min; the longer step counts.",
+        more.files.front().string(), csv::in_quotes(one.meters[i].name), now.count() / 60,
+        before.count() / 60);
+  }
+  return {};
 }
 
 /// What two files say of the same days; empty: the same, or none.
@@ -107,6 +127,9 @@ std::string overlap_note(const SurveyedExport& one, const SurveyedExport& more) 
 void join(SurveyedExport& one, SurveyedExport more) {
   std::string note = overlap_note(one, more);
   if (!note.empty()) one.notes.push_back(std::move(note));
+  if (std::string steps = step_note(one, more); !steps.empty()) {
+    one.notes.push_back(std::move(steps));
+  }
   one.files.insert(one.files.end(), more.files.begin(), more.files.end());
   one.notes.insert(one.notes.end(), more.notes.begin(), more.notes.end());
   for (std::size_t i = 0; i < one.meters.size(); ++i) join(one.meters[i], more.meters[i]);

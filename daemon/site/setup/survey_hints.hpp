@@ -2,12 +2,15 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adapters/csv/readings_csv.hpp"
 #include "adapters/table/sniff.hpp"
+#include "daemon/site/replay/register_evidence.hpp"
 
 namespace recald::daemon {
 
@@ -18,6 +21,9 @@ struct SurveyHints {
   std::vector<std::string> units;
   std::optional<csv::Stamps> stamps;
   std::optional<std::chrono::seconds> interval;
+  /// What other files of its kind show of registers, by row and column, and of a clock column.
+  std::map<std::pair<std::string, std::string>, RegisterVerdict> registers;
+  std::optional<table::ClockFormat> clock_format;
   std::string clock;  ///< IANA zone of the stamps; empty: the building's, or as they show.
   std::string clock_because = "as told";
 };
