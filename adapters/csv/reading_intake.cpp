@@ -303,9 +303,18 @@ void ReadingIntake::begin_step(IntakeMeter& meter, const Row& row, seconds step,
   const seconds interval = meter.report.shown.interval;
   const double shorter =
       metering::in_hours(meter.means ? meter.step : interval) / metering::in_hours(step);
-  note_step(meter, row, step);
   is_of_held = is_of_held && meter.rows.stamps == Stamps::start;
   meter.step = step;
+  // The row before was left out as one of the longer step, which ended at its stamp.
+  const auto before = std::exchange(meter.last_left_out, std::nullopt);
+  const bool is_interval_now = step == interval && !meter.means;
+  if (is_of_held && is_interval_now && before && before->stamp == row.stamp - step) {
+    --meter.report.steps.back().left_out;
+    --meter.left_out;
+    hold(meter, reading_of(meter, *before, before->stamp));
+    return note_step(meter, *before, step);
+  }
+  note_step(meter, row, step);
   if (is_of_held && meter.held) {
     const Reading held = *std::exchange(meter.held, std::nullopt);
     meter.open = {held, step, meter.conversion.is_rate};
@@ -358,6 +367,8 @@ void ReadingIntake::place(IntakeMeter& meter, const Row& row, Instant stamp) {
 
 void ReadingIntake::leave_out(IntakeMeter& meter, const Row& row) {
   ++meter.left_out;
+  meter.last_left_out = row;
+  meter.last_left_out->text = {};
   RowStep& step = meter.report.steps.back();
   if (step.left_out++ > 0) return;
   refuse(row.line,

@@ -67,9 +67,10 @@ struct IntakeMeter {
   std::optional<metering::Instant> first_start;  ///< Of readings passed on: the earliest start
   std::optional<metering::Instant> last_start;   ///< … and the latest.
   // In this file:
-  std::uint64_t placed = 0;    ///< Rows.
-  std::uint64_t follows = 0;   ///< Of these, rows directly after the previous one.
-  std::uint64_t left_out = 0;  ///< Of these, rows at a step that is longer than the interval.
+  std::uint64_t placed = 0;          ///< Rows.
+  std::uint64_t follows = 0;         ///< Of these, rows directly after the previous one.
+  std::uint64_t left_out = 0;        ///< Of these, rows at a step that is longer than the interval.
+  std::optional<Row> last_left_out;  ///< Of starts, it may be the first of a shorter step.
   bool has_earlier_file = false;
   bool begins_file = false;  ///< No row of this file has been placed.
 };

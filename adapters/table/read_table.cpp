@@ -450,7 +450,9 @@ class TableReader {
     bool has_number = false;
     bool has_value = false;
     for (const std::size_t column : value_) {
-      const auto number = parse_cell(cell(row, column), shape_.decimal);
+      const std::string_view text = cell(row, column);
+      auto number = parse_cell(text, shape_.decimal);
+      if (!number) number = parse_cell(split_number(text).number, shape_.decimal);
       has_number = has_number || number.has_value();
       has_value = has_value || number.value_or(0.0) != 0.0;
     }
