@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/line_reader.hpp"
 #include "adapters/table/cells/stamps.hpp"
+#include "adapters/table/cells/words.hpp"
 #include "adapters/table/clock_labels.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/layouts/guess_layout.hpp"
@@ -44,16 +46,60 @@ std::vector<table::KeptRow> kept_head(table::RowSource& rows) {
   return kept;
 }
 
+/// Exports that say their unit nowhere, by columns that only theirs have together.
+struct KnownExport {
+  std::array<std::string_view, 4> columns;  ///< As `folded` makes them.
+  std::string_view unit;
+  std::string_view of;
+};
+constexpr std::array kKnownExports{
+    KnownExport{{" giorno ", " 00 00 00 15 ", " 00 15 00 30 ", " 23 45 24 00 "},
+                "kWh",
+                "as quarters of an hour of e-distribuzione are"},
+    KnownExport{{" giorno ", " 00 00 00 15 ", " 00 15 00 30 ", " 23 45 00 00 "},
+                "kWh",
+                "as quarters of an hour of e-distribuzione are"},
+    KnownExport{{" datum ", " ean ", " verbruik ", " piek "}, "kWh", "as exports of Engie are"},
+};
+
+/// A unit that no cell says, but the kind of export.
+void take_known_unit(std::span<const table::KeptRow> head, table::TableGuess& guess) {
+  const bool lacks_one =
+      guess.shape.unit_column.empty() &&
+      std::ranges::any_of(guess.values, [](const auto& value) { return value.unit.empty(); });
+  if (!lacks_one) return;
+  constexpr std::size_t kSearched = 20;
+  for (const table::KeptRow& row : head.first(std::min(kSearched, head.size()))) {
+    std::vector<std::string> cells;
+    for (const std::string& cell : row.cells) cells.push_back(table::folded(cell));
+    const auto has = [&](std::string_view column) {
+      return std::ranges::find(cells, column) != cells.end();
+    };
+    const auto known = std::ranges::find_if(kKnownExports, [&](const KnownExport& one) {
+      return std::ranges::all_of(one.columns, has);
+    });
+    if (known == kKnownExports.end()) continue;
+    for (table::GuessedColumn& value : guess.values) {
+      if (!value.unit.empty()) continue;
+      value.unit = known->unit;
+      value.unit_because = known->of;
+    }
+    return;
+  }
+}
+
 Result<FileGuess> guess_rows(std::vector<table::KeptRow> head, const table::TableHints& hints) {
   if (const auto layout = table::guess_layout(head)) {
     auto guess = TRY(table::guess_table(layout->rows, hints));
     table::settle_layout(*layout, guess);
+    take_known_unit(head, guess);
     return FileGuess{std::move(guess), layout->because, {}};
   }
   for (table::KeptRow& row : head) {
     if (row.cells.size() > table::kCellsMax) row.cells.resize(table::kCellsMax);
   }
   auto guess = TRY(table::guess_table(head, hints));
+  take_known_unit(head, guess);
   return FileGuess{std::move(guess), "", {}};
 }
 

@@ -43,7 +43,9 @@ TEST(RisingWatch, ARegisterIsFoundAndAllOfItDoubted) {
       auto pushed = readings(values, i);
       const auto doubt = watch.look(pushed, minutes{15});
       doubted = std::ssize(doubt.before) + std::ranges::count_if(pushed, is_suspect);
-      if (i + at_once == 30) EXPECT_THAT(doubt.words, HasSubstr("only rise"));
+      if (i + at_once == 30) {
+        EXPECT_THAT(doubt.words, HasSubstr("only rise"));
+      }
     }
     EXPECT_EQ(doubted, 30);
   }
