@@ -44,6 +44,7 @@ void print_line_words(const Recording& recording, const Console& console) {
   const std::size_t shown = console.detail == Console::Detail::all
                                 ? std::numeric_limits<std::size_t>::max()
                                 : kLinesShown;
+  for (const std::string& note : recording.notes) console.err << fmt::format("! {}\n", note);
   for (const FileIssues& file : recording.files) {
     const std::string name = file.file.filename().string();
     if (!file.others.empty()) console.err << fmt::format("{}: {}\n", name, file.others.words());

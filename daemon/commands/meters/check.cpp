@@ -2,10 +2,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "adapters/csv/fields.hpp"
 #include "adapters/system/files/regular_file.hpp"
+#include "adapters/table/cells/header_units.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/commands/commands.hpp"
 #include "daemon/commands/meters/check_alerts.hpp"
@@ -256,6 +259,29 @@ std::vector<std::string> check_files(const SiteConfig& site) {
   return problems;
 }
 
+/// What a site file says against the header of its column, and readings from days to come.
+std::vector<std::string> doubts_of(const MeterConfig& config, const MeterRecord& record) {
+  std::vector<std::string> doubts;
+  if (config.table && !config.table->unit.empty()) {
+    const std::string header = table::split_unit(config.table->column).unit;
+    const auto said = metering::find_unit(header, config.meter.utility, config.units);
+    const auto told = metering::find_unit(config.table->unit, config.meter.utility, config.units);
+    if (said && told && (said->is_rate != told->is_rate || said->factor != told->factor)) {
+      doubts.push_back(fmt::format("its unit is \"{}\", while the header of its column says {}: {}",
+                                   config.table->unit, header,
+                                   csv::in_quotes(config.table->column)));
+    }
+  }
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  if (record.rows.span && record.rows.span->end > now + std::chrono::days{1}) {
+    doubts.push_back(
+        fmt::format("its readings go on until {}, which is yet to come; is the order of its dates "
+                    "(time_format) right?",
+                    metering::to_string(record.rows.span->end)));
+  }
+  return doubts;
+}
+
 /// What `replay` would refuse of the meters' files. @param refused  Becomes how many lines.
 std::vector<std::string> check_readings(const SiteConfig& site, const Console& console,
                                         std::uint64_t& refused) {
@@ -266,9 +292,14 @@ std::vector<std::string> check_readings(const SiteConfig& site, const Console& c
   if (!recording) return {site.file.filename().string() + ": " + recording.error().message};
   print_line_words(*recording, console);
   for (const FileIssues& file : recording->files) refused += file.issues.total;
-  for (const MeterRecord& record : recording->meters) {
-    if (!record.doubt.empty())
-      console.err << fmt::format("! {}: {}\n", record.meter.id, record.doubt);
+  for (std::size_t i = 0; i < recording->meters.size(); ++i) {
+    const MeterRecord& record = recording->meters[i];
+    std::vector<std::string> doubts = doubts_of(site.meters[i], record);
+    if (!record.doubt.empty()) doubts.push_back(record.doubt);
+    doubts.insert(doubts.end(), record.series_doubts.begin(), record.series_doubts.end());
+    for (const std::string& doubt : doubts) {
+      console.err << fmt::format("! {}: {}\n", record.meter.id, doubt);
+    }
   }
   return {};
 }

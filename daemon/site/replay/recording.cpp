@@ -13,6 +13,7 @@
 #include "adapters/table/read_table.hpp"
 #include "core/absent.hpp"
 #include "core/metering/months/series_doubts.hpp"
+#include "daemon/site/replay/clock_doubts.hpp"
 #include "daemon/site/replay/overlap_merge.hpp"
 #include "daemon/site/replay/register_evidence.hpp"
 
@@ -90,6 +91,15 @@ class GroupReader {
     TRY(table::read_table(file, *group_.shape, parts_.parts(), calendar_, intake, &facts));
     for (const std::string& note : facts.notes) {
       notes.push_back(fmt::format("{}: {}.", file.filename().string(), note));
+    }
+    const std::string& zone = group_.shape->timezone;
+    const auto own =
+        zone.empty() ? calendar_ : metering::LocalCalendar::open(zone).value_or(calendar_);
+    if (const auto other = other_clock(facts, own)) {
+      notes.push_back(
+          fmt::format("{}: {}; its clock changes fit {}. If that is its clock, give 'timezone' in "
+                      "its [[meter]].",
+                      file.filename().string(), other->because, fmt::join(other->zones, ", ")));
     }
     return {};
   }
@@ -180,7 +190,12 @@ class SlotRecord {
     record.findings = metering::describe_data(
         record.meter.id, episodes_until(until, record.meter.interval), zero_runs, figures,
         record.level_changes, record.counts, calendar, record.meter.rated_kW.has_value());
-    std::ranges::move(doubts_.describe(record.meter.id), std::back_inserter(record.findings));
+    auto doubts = doubts_.describe(record.meter.id);
+    record.series_doubts.clear();
+    for (const metering::DataFinding& doubt : doubts) {
+      record.series_doubts.push_back(doubt.sentence);
+    }
+    std::ranges::move(doubts, std::back_inserter(record.findings));
   }
 
  private:

@@ -30,6 +30,7 @@ struct MeterRecord {
   std::vector<metering::LevelChange> level_changes;
   std::vector<metering::DataFinding> findings;
   std::string doubt;  ///< A sentence, also among the findings: whether it is a register.
+  std::vector<std::string> series_doubts;  ///< Likewise: hours added up, units that change.
 };
 
 struct FileIssues {
