@@ -367,6 +367,7 @@ class TableReader {
     std::vector<std::string> header;
     for (const std::string_view one : row.cells) header.push_back(utf8_of(one));
     if (header == header_) return;
+    ++facts_.further_headers;
     if (order_ != Order::old_to_new) {
       find_order();
       hand_on_kept();

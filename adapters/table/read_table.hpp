@@ -45,9 +45,10 @@ struct ClockFacts {
   /// such time; so many at most.
   static constexpr std::size_t kPutBackMax = 16;
   std::map<metering::Day, metering::Instant> put_back;
-  std::uint64_t repeated = 0;  ///< Times that came again.
-  std::uint64_t words = 0;     ///< Cells with a word for no value, such as "n/a".
-  std::string first_word;      ///< The first of them.
+  std::uint64_t repeated = 0;         ///< Times that came again.
+  std::uint64_t further_headers = 0;  ///< Of blocks further down with other columns.
+  std::uint64_t words = 0;            ///< Cells with a word for no value, such as "n/a".
+  std::string first_word;             ///< The first of them.
 
   void add_word(std::string_view word) {
     if (words++ == 0) first_word = word;

@@ -518,7 +518,7 @@ TEST_F(Cli, ReplayWritesMonths) {
   EXPECT_EQ(outcome.exit_code, kSuccess);
   const std::string months = read_text(folder_ / "made/below/months.csv");
   EXPECT_THAT(months, StartsWith("month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,"
-                                 "method,usable,different,revision,tzdata\n"
+                                 "method,usable,different,revision,tzdata,estimated_share\n"
                                  "2021-01,electricity,1200,kWh/day,1.000000,0.000000,60,"
                                  "2021-01-01T00:00:00Z,block-"));
   EXPECT_EQ(lines_in(months), 1 + 6);
@@ -609,7 +609,7 @@ TEST_F(Cli, ARegisterWithoutCounterIsDoubted) {
   }
   write("readings.csv", text);
   const std::string doubt =
-      "The values never fall, as those of a cumulative register; if it is one, "
+      "The values hardly ever fall, as those of a cumulative register; if it is one, "
       "add rated_kW = ";
   for (const char* command : {"check", "replay"}) {
     const Outcome outcome = run({command, site()});

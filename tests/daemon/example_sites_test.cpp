@@ -62,7 +62,7 @@ class RealSite : public ::testing::Test {
 TEST(ExampleSites, EveryKeyIsKnown) {
   const auto site = load_site(example("every-key"));
   ASSERT_TRUE(site.has_value()) << site.error().front();
-  EXPECT_EQ(site->meters.size(), 11u);
+  EXPECT_EQ(site->meters.size(), 12u);
   EXPECT_EQ(site->buses.size(), 2u);
   EXPECT_TRUE(site->building->air->economiser_lockout_C.has_value());
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "adapters/modbus/frame.hpp"
@@ -59,7 +60,11 @@ std::optional<StoreEvent> RefusalWatch::take(const modbus::PlannedRead& read,
   const modbus::ReadFailure& failure = result.error();
   if (failure.fault != modbus::ReadFault::exception) return {};
   if (read.may_split && modbus::is_illegal_span(failure)) return told_of_split(read, failure, at);
-  return refuse(known, {read.address, read.count, failure.exception_code, at}, at);
+  Instant& reported =
+      read.instead_of
+          ? reported_of_parts_.try_emplace(*read.instead_of, Instant::min()).first->second
+          : known.reported;
+  return refuse(known, {read.address, read.count, failure.exception_code, at}, at, reported);
 }
 
 StoreEvent RefusalWatch::told_of_split(const modbus::PlannedRead& read,
@@ -77,16 +82,16 @@ StoreEvent RefusalWatch::told_of_split(const modbus::PlannedRead& read,
           .is_counted = true};
 }
 
-std::optional<StoreEvent> RefusalWatch::refuse(Read& read, RefusedRegisters refused,
-                                               Instant at) const {
+std::optional<StoreEvent> RefusalWatch::refuse(Read& read, RefusedRegisters refused, Instant at,
+                                               Instant& reported) const {
   if (read.refused) refused.since = read.refused->since;
   read.refused = refused;
   const Kind kind = kind_of(refused.exception);
   if (read.is_lasting || at - refused.since < kind.patience) return {};
   read.is_lasting = true;
-  read.is_reported = read.reported == Instant::min() || at - read.reported >= kReportEvery;
+  read.is_reported = reported == Instant::min() || at - reported >= kReportEvery;
   if (!read.is_reported) return {};
-  read.reported = at;
+  reported = at;
   return StoreEvent{.time = at,
                     .severity = Severity::warning,
                     .kind = std::string{kind.event},
@@ -109,7 +114,17 @@ std::optional<StoreEvent> RefusalWatch::answer(Read& read, Instant at) const {
 std::vector<RefusedRegisters> RefusalWatch::refused() const {
   std::vector<RefusedRegisters> all;
   for (const auto& [address, read] : reads_) {
-    if (read.is_lasting) all.push_back(*read.refused);
+    if (!read.is_lasting) continue;
+    const RefusedRegisters& one = *read.refused;
+    // Fields that are read one by one may all be refused, as one read was before.
+    const bool goes_on = !all.empty() && all.back().address + all.back().count == one.address &&
+                         all.back().exception == one.exception;
+    if (!goes_on) {
+      all.push_back(one);
+      continue;
+    }
+    all.back().count = static_cast<std::uint16_t>(all.back().count + one.count);
+    all.back().since = std::min(all.back().since, one.since);
   }
   return all;
 }

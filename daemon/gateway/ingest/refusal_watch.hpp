@@ -45,7 +45,7 @@ class RefusalWatch {
                                                const modbus::ReadResult& result,
                                                metering::Instant at);
 
-  /// Refusals that someone should look at.
+  /// Refusals that someone should look at; of registers one after the other one.
   [[nodiscard]] std::vector<RefusedRegisters> refused() const;
 
  private:
@@ -59,12 +59,15 @@ class RefusalWatch {
   [[nodiscard]] StoreEvent told_of_split(const modbus::PlannedRead& read,
                                          const modbus::ReadFailure& failure,
                                          metering::Instant at) const;
+  /// @param reported  When it, or another part of the same read, was reported last.
   [[nodiscard]] std::optional<StoreEvent> refuse(Read& read, RefusedRegisters refused,
-                                                 metering::Instant at) const;
+                                                 metering::Instant at,
+                                                 metering::Instant& reported) const;
   [[nodiscard]] std::optional<StoreEvent> answer(Read& read, metering::Instant at) const;
 
   std::string meter_;
   std::map<std::pair<std::uint16_t, std::uint16_t>, Read> reads_;  ///< By address and count.
+  std::map<std::size_t, metering::Instant> reported_of_parts_;     ///< By the read that was split.
 };
 
 }  // namespace recald::daemon

@@ -142,7 +142,7 @@ std::optional<metering::CounterSettings> read_counter(TomlReader table,
   const std::string unit = table.text_or("unit", "kWh");
   const auto resets = table.word("resets", {"day", "month"});
   reset_zone = table.text_or("reset_zone", "");
-  if (!reset_zone.empty() && !metering::LocalCalendar::open(reset_zone)) {
+  if (table.has("reset_zone") && !metering::LocalCalendar::open(reset_zone)) {
     table.problem_at("reset_zone",
                      fmt::format("'reset_zone' is \"{}\", no time zone; it is one like "
                                  "\"Etc/UTC\"",

@@ -67,6 +67,9 @@ void read_clock_format(TomlReader& meter, table::TableShape& shape) {
 /// A flag means one thing.
 void read_flags(TomlReader& meter, table::TableShape& shape) {
   shape.flag_column = meter.text_or("flag_column", "");
+  if (meter.has("flag_column") && shape.flag_column.empty()) {
+    meter.problem_at("flag_column", "'flag_column' is empty; name a column, or leave it out");
+  }
   for (const auto& [key, flags] : {std::pair{"missing_flags", &shape.missing_flags},
                                    std::pair{"estimated_flags", &shape.estimated_flags}}) {
     *flags = meter.texts(key).value_or(std::vector<std::string>{});

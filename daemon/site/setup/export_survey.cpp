@@ -352,7 +352,12 @@ bool learn_flags(SurveyedExport& survey, const WholeFile& whole) {
   }
   shape.missing_flags = meanings.missing;
   shape.estimated_flags = meanings.estimated;
-  if (known.empty() && unknown.empty()) shape.flag_column.clear();
+  if (known.empty() && unknown.empty()) {
+    survey.notes.push_back(fmt::format("{}: columns not used: {} (text).",
+                                       survey.files.front().filename().string(),
+                                       shape.flag_column));
+    shape.flag_column.clear();
+  }
   return !known.empty();
 }
 
@@ -1053,7 +1058,8 @@ Result<void> tell_rows_apart(SurveyedExport& survey, const metering::LocalCalend
   const table::TableShape& shape = survey.table->shape;
   const std::filesystem::path& file = survey.files.front();
   if (table::describes_itself(shape.container)) return {};
-  if (out_of_order(whole) * kFew <= whole.report.readings) return {};
+  const bool are_in_order = out_of_order(whole) * kFew <= whole.report.readings;
+  if (are_in_order && whole.clock.further_headers == 0) return {};
   const auto further = TRY(columns_of_further_blocks(file, shape));
   if (!further.empty() && shape.meter_column.empty()) {
     SurveyedExport changed = survey;
@@ -1063,6 +1069,7 @@ Result<void> tell_rows_apart(SurveyedExport& survey, const metering::LocalCalend
     const bool is_told = TRY(try_apart(survey, calendar, whole, std::move(changed)));
     if (is_told) return {};
   }
+  if (are_in_order) return {};
   table::TableShape titled = shape;
   titled.further_meter_columns.clear();
   titled.meter_column = table::kTitleColumn;

@@ -229,8 +229,8 @@ Result<FileGuess> guess_workbook(const std::filesystem::path& file,
   }
   if (!others.empty()) {
     chosen.notes.push_back(
-        fmt::format("{}: sheet {} is read ({}); {} not: {}. For another one copy the [[meter]] and "
-                    "change its 'sheet', or say --sheet.",
+        fmt::format("{}: sheet {} is read ({}); {} not: {}. For another one repeat the "
+                    "[[meter]] with its 'sheet', or say --sheet.",
                     file.filename().string(), csv::in_quotes(best->name), step_words(best->step),
                     others.size() == 1 ? "one is" : "others are", fmt::join(others, ", ")));
   }

@@ -111,7 +111,7 @@ TEST(Flags, RowsAreReadAsTheirFlagsSay) {
     for (std::size_t i = 0; i < kinds.size(); ++i) {
       EXPECT_EQ(std::isnan(readings[i].mean_kW), kinds[i] == 2);
       EXPECT_EQ(has(readings[i].reasons, Reason::estimated), kinds[i] == 1);
-      if (kinds[i] == 1) EXPECT_EQ(readings[i].validity, Validity::scaled);
+      EXPECT_EQ(readings[i].validity == Validity::scaled, kinds[i] == 1);
     }
   }
 }

@@ -109,8 +109,8 @@ ExportTruth added(const ExportTruth& a, const ExportTruth& b) {
 
 /// Two registers a day, in rows that come in turns; a column of sums beside them.
 TEST_F(InitLayouts, ARowADayWithRegisters) {
-  const ExportTruth taken = truth(1, 15, "2024-09-20", "2024-11-05");
-  const ExportTruth fed = truth(2, 15, "2024-09-20", "2024-11-05");
+  const ExportTruth taken = truth(1, 15, "2024-09-01", "2024-11-30");
+  const ExportTruth fed = truth(2, 15, "2024-09-01", "2024-11-30");
   std::string text = "Stelle;Datum;Register;Einheit";
   for (int i = 0; i < 96; ++i) text += fmt::format(";{:02}:{:02}", i / 4, i % 4 * 15);
   text += ";Summe\n";
@@ -362,7 +362,6 @@ TEST_F(InitLayouts, MetersOneAfterAnother) {
     }
   }
   const Months months = months_of("engie.csv", text);
-  EXPECT_THAT(outcome_.out, HasSubstr("Soort tells apart"));
   ASSERT_THAT(months, SizeIs(2));
   expect_months(months, "elektriciteit", power);
   expect_months(months, "gas", gas);

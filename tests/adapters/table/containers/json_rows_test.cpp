@@ -79,8 +79,8 @@ TEST(JsonRows, ListsBesideEachOtherAreColumns) {
   EXPECT_THAT(
       cells_of(
           R"({"unit": "kWh", "hourly": {"time": ["a", "b", "c"], "use": [1, 2, 3], "other": [1]}})"),
-      ElementsAre(ElementsAre("unit", "time", "use"), ElementsAre("kWh", "a", "1"),
-                  ElementsAre("kWh", "b", "2"), ElementsAre("kWh", "c", "3")));
+      ElementsAre(ElementsAre("time", "use", "unit"), ElementsAre("a", "1", "kWh"),
+                  ElementsAre("b", "2", "kWh"), ElementsAre("c", "3", "kWh")));
 }
 
 TEST(JsonRows, PairsHaveNumberedColumns) {
@@ -89,8 +89,8 @@ TEST(JsonRows, PairsHaveNumberedColumns) {
                           ElementsAre("1577836860000", "2")));
   EXPECT_THAT(
       cells_of(R"({"result": [{"metric": {"name": "A"}, "values": [[1, "2"], [3, "4"]]}]})"),
-      ElementsAre(ElementsAre("result.metric.name", "item 1", "item 2"), ElementsAre("A", "1", "2"),
-                  ElementsAre("A", "3", "4")));
+      ElementsAre(ElementsAre("item 1", "item 2", "result.metric.name"), ElementsAre("1", "2", "A"),
+                  ElementsAre("3", "4", "A")));
 }
 
 TEST(JsonRows, WhatIsNoListOfReadingsSaysSo) {

@@ -129,6 +129,7 @@ TEST_F(EveryKey, WordsAreKnownOnes) {
                                    "clock_column",
                                    "meter_column",
                                    "unit_column",
+                                   "flag_column",
                                    "sheet",
                                    "currency",
                                    "program",
