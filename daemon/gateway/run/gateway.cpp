@@ -500,14 +500,14 @@ Result<CommitCounts> Gateway::take_pushed(const std::string& meter,
   (*feed)->note_heard(progress, now, counts->taken > 0);
   note_committed(batch, *counts);
   report_pushed(meter, *counts, correction, now);
-  if (!doubt.words.empty()) {
+  counts->doubt = std::move(doubt.words);
+  if (!counts->doubt.empty() && !doubt.is_weak) {
     note({.time = now,
           .severity = Severity::warning,
           .kind = "readings_rise",
           .subject = meter,
-          .text = fmt::format("meter '{}': {}", meter, doubt.words),
+          .text = fmt::format("meter '{}': {}", meter, counts->doubt),
           .is_counted = true});
-    counts->doubt = std::move(doubt.words);
   }
   return counts;
 }

@@ -29,6 +29,7 @@ bool is_suspect(const Reading& reading) { return reading.validity == Validity::s
 
 // Whatever the register's count and load, in one push or in pushes of one.
 TEST(RisingWatch, ARegisterIsFoundAndAllOfItDoubted) {
+  constexpr std::size_t kCount = 120;  // thirty hours
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random{seed};
@@ -37,17 +38,17 @@ TEST(RisingWatch, ARegisterIsFoundAndAllOfItDoubted) {
     RisingWatch watch;
     std::ptrdiff_t doubted = 0;
     const std::size_t at_once = seed % 2 == 0 ? 1 : 6;
-    for (std::size_t i = 0; i < 30; i += at_once) {
+    for (std::size_t i = 0; i < kCount; i += at_once) {
       std::vector<double> values;
       for (std::size_t k = 0; k < at_once; ++k) values.push_back(register_kW += load_kW(random));
       auto pushed = readings(values, i);
       const auto doubt = watch.look(pushed, minutes{15});
       doubted = std::ssize(doubt.before) + std::ranges::count_if(pushed, is_suspect);
-      if (i + at_once == 30) {
+      if (i + at_once == kCount) {
         EXPECT_THAT(doubt.words, HasSubstr("only rise"));
       }
     }
-    EXPECT_EQ(doubted, 30);
+    EXPECT_EQ(doubted, std::ptrdiff_t{kCount});
   }
 }
 
@@ -69,11 +70,38 @@ TEST(RisingWatch, ALoadIsNone) {
   }
 }
 
+// A clear day, as inverters send it each minute: it rises for hours, and by little around noon.
+TEST(RisingWatch, AClearMorningIsNone) {
+  for (const double step_minutes : {1.0, 5.0, 15.0}) {
+    std::vector<double> values_kW;
+    for (int i = 0; i < 3 * 24 * 60 / step_minutes; ++i) {
+      const double of_day = std::sin(i * step_minutes / 1440.0 * 6.283 - 1.571);
+      values_kW.push_back(200.0 * std::max(0.0, of_day));
+    }
+    RisingWatch watch;
+    auto pushed = readings(values_kW);
+    for (std::size_t i = 0; i < pushed.size(); ++i) {
+      pushed[i].start = kStart + std::chrono::seconds{static_cast<int>(60 * step_minutes)} * i;
+    }
+    EXPECT_THAT(watch.look(pushed, minutes{15}).words, IsEmpty()) << step_minutes;
+  }
+}
+
 // A steady load is the same again and again.
 TEST(RisingWatch, ASteadyLoadIsNone) {
   RisingWatch watch;
   auto pushed = readings(std::vector<double>(100, 12.0));
   EXPECT_THAT(watch.look(pushed, minutes{15}).words, IsEmpty());
+}
+
+// Four readings of a large register, or of a large steady load: nothing is thrown away.
+TEST(RisingWatch, AFewSmallRisesAreOnlyTold) {
+  RisingWatch watch;
+  auto pushed = readings({8138.0, 8152.4, 8166.8, 8181.2});
+  const auto doubt = watch.look(pushed, minutes{15});
+  EXPECT_TRUE(doubt.is_weak);
+  EXPECT_THAT(doubt.words, HasSubstr("only rise"));
+  EXPECT_EQ(std::ranges::count_if(pushed, is_suspect), 0);
 }
 
 TEST(RisingWatch, OneValueLargerThanAnyBuildingsIsDoubted) {
