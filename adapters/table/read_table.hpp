@@ -1,9 +1,8 @@
 /// Turns exports into readings: any container and shape, with the same rules as recald's own CSV.
 #pragma once
 
-#include <filesystem>
 #include <map>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -13,15 +12,6 @@
 #include "adapters/table/table_shape.hpp"
 
 namespace recald::table {
-
-/// Opens the file with the container and the layout that its shape names, as rows of one time each.
-/// @param calendar  Of the table's clock, outlives the rows; for days with a clock change in a
-///                  table with a row a day. Null: all days have 24 hours.
-/// @return not_found, io_failed, malformed (not a workbook, no such sheet, not XML),
-///         all with its name.
-[[nodiscard]] Result<std::unique_ptr<RowSource>> open_rows(
-    const std::filesystem::path& file, const TableShape& shape,
-    const metering::LocalCalendar* calendar = nullptr);
 
 /// The rows of a day on which the clock changes.
 struct ClockChange {
@@ -79,11 +69,6 @@ struct ClockFacts {
 ///         or the source's failure.
 [[nodiscard]] Result<void> read_table(RowSource& rows, std::string_view name,
                                       const TableShape& shape, std::span<const TableMeter> meters,
-                                      const metering::LocalCalendar& calendar,
-                                      csv::ReadingIntake& intake, ClockFacts* facts = nullptr);
-
-[[nodiscard]] Result<void> read_table(const std::filesystem::path& file, const TableShape& shape,
-                                      std::span<const TableMeter> meters,
                                       const metering::LocalCalendar& calendar,
                                       csv::ReadingIntake& intake, ClockFacts* facts = nullptr);
 

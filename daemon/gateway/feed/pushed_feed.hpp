@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "daemon/gateway/feed/meter_feed.hpp"
-#include "daemon/gateway/ingest/rising_watch.hpp"
+#include "daemon/gateway/feed/rising_watch.hpp"
 #include "daemon/site/config/site_config.hpp"
 
 namespace recald::daemon {

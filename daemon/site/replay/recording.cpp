@@ -9,8 +9,8 @@
 #include <map>
 #include <set>
 
+#include "adapters/table/files/open_rows.hpp"
 #include "adapters/table/loads/meter_parts.hpp"
-#include "adapters/table/read_table.hpp"
 #include "core/absent.hpp"
 #include "core/metering/months/series_doubts.hpp"
 #include "daemon/site/replay/clock_doubts.hpp"

@@ -15,9 +15,9 @@
 #include "adapters/table/cells/words.hpp"
 #include "adapters/table/clock_labels.hpp"
 #include "adapters/table/delimited.hpp"
+#include "adapters/table/files/open_rows.hpp"
 #include "adapters/table/layouts/guess_layout.hpp"
 #include "adapters/table/layouts/layout_rows.hpp"
-#include "adapters/table/read_table.hpp"
 #include "adapters/table/xlsx.hpp"
 
 namespace recald::daemon {

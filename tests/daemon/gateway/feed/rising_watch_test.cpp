@@ -1,4 +1,4 @@
-#include "daemon/gateway/ingest/rising_watch.hpp"
+#include "daemon/gateway/feed/rising_watch.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,3 +1,5 @@
+#include "adapters/table/files/open_rows.hpp"
+
 #include <algorithm>
 #include <string>
 
@@ -8,7 +10,6 @@
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/green_button.hpp"
 #include "adapters/table/layouts/layout_rows.hpp"
-#include "adapters/table/read_table.hpp"
 #include "adapters/table/xlsx.hpp"
 
 namespace recald::table {
