@@ -324,8 +324,18 @@ csv::ByteSource as_utf8(csv::ByteSource bytes) {
 
 std::string utf8_of(std::string_view text) {
   if (is_utf8(text)) return std::string{text};
+  // Windows has other signs where Latin-1 has none: dashes, quotes, the euro.
+  constexpr std::array<std::uint16_t, 32> kWindows{
+      0x20AC, 0x81,   0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+      0x2039, 0x0152, 0x8D,   0x017D, 0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+      0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0x9D,   0x017E, 0x0178};
+  constexpr unsigned char kFirst = 0x80;
   std::string out;
-  for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_windows = byte >= kFirst && byte < kFirst + kWindows.size();
+    append_utf8(out, is_windows ? kWindows[byte - kFirst] : byte);
+  }
   return out;
 }
 

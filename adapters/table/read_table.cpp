@@ -215,7 +215,7 @@ class TableReader {
     }
     const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
     clocks_.assign(clocks, ClockReader{calendar_});
-    shown_.assign(clocks, Instant::min());
+    shown_.assign(clocks, {});
     return {};
   }
 
@@ -310,6 +310,7 @@ class TableReader {
   /// The row's time as its clock shows it, whatever its zone.
   [[nodiscard]] std::optional<Instant> clock_of(const TableRow& row) const {
     auto written = parse_stamp(cell(row, time_), shape_.time_format);
+    if (!written) written = parse_stamp(utf8_of(cell(row, time_)), shape_.time_format);
     if (!written || (clock_ != kNone && !add_clock(row, *written).empty())) return {};
     return written->clock;
   }
@@ -381,7 +382,7 @@ class TableReader {
   /// Whether a row has no time, and no number in any meter's column. Without a header, what stands
   /// above the first time is one, whatever it has.
   [[nodiscard]] bool is_more_header(const TableRow& row) const {
-    if (is_stamp(cell(row, time_), shape_.time_format)) return false;
+    if (is_stamp(utf8_of(cell(row, time_)), shape_.time_format)) return false;
     return header_.empty() || std::none_of(value_.begin(), value_.end(), [&](std::size_t column) {
              return parse_cell(cell(row, column), shape_.decimal).has_value();
            });
@@ -402,6 +403,7 @@ class TableReader {
     };
     const std::string_view text = cell(row, time_);
     auto written = parse_stamp(text, shape_.time_format);
+    if (!written) written = parse_stamp(utf8_of(text), shape_.time_format);  // dashes of Windows
     if (!written) return refuse(written.error().message);
     counted_date_ = written->clock;
     if (clock_ != kNone) {
@@ -433,11 +435,17 @@ class TableReader {
                   "own zone as 'timezone', such as \"Etc/GMT-1\"");
   }
 
-  /// A time that comes again, an hour or less after it was shown first.
+  /// A time that comes again, an hour or less after it was shown first; of stamps beside the grid
+  /// the second may be some seconds later.
   void note_clock_put_back(std::size_t clock, Instant shown) {
-    Instant& last = shown_[clock];
+    auto& [last, step] = shown_[clock];
     constexpr seconds kHour{3600};
-    if (shown <= last && last - shown < kHour) {
+    constexpr int kBesideShare = 10;
+    const bool is_back = shown <= last && last - shown < kHour;
+    const bool is_beside =
+        shown > last && last > Instant::min() && kBesideShare * (shown - last) <= step;
+    if (shown > last && last > Instant::min() && !is_beside) step = shown - last;
+    if (is_back || is_beside) {
       const metering::Day day{std::chrono::floor<std::chrono::days>(shown)};
       if (facts_.put_back.size() < ClockFacts::kPutBackMax || facts_.put_back.contains(day)) {
         facts_.put_back.try_emplace(day, shown);
@@ -504,7 +512,7 @@ class TableReader {
       if (value_[i] == kNone) continue;
       csv::IntakeMeter& meter = intake_.meter(i);
       if (unit_ != kNone && (meter.unit.empty() || meter.unit != cell(row, unit_))) {
-        if (const auto known = intake_.set_unit(meter, cell(row, unit_)); !known) {
+        if (const auto known = intake_.set_unit(meter, utf8_of(cell(row, unit_))); !known) {
           intake_.refuse(row.number, known.error().message, row.text, &meter);
           continue;
         }
@@ -612,7 +620,11 @@ class TableReader {
   std::vector<bool> is_first_of_name_;
   std::size_t last_meter_ = 0;
   std::vector<ClockReader> clocks_;  ///< One for the table, or one per meter of a long table.
-  std::vector<Instant> shown_;       ///< What each of them showed last.
+  struct Shown {
+    Instant last = Instant::min();
+    seconds step{0};  ///< Between the two times before.
+  };
+  std::vector<Shown> shown_;  ///< What each clock showed last.
   bool is_above_data_ = false;
   std::uint64_t above_ = 0;  ///< Rows between header and data so far.
   std::uint64_t last_above_ = 0;

@@ -63,10 +63,13 @@ struct GroupOrder {
     last = stamp;
   }
 
+  /// Steps back in time by more than a clock is changed, as where another meter begins.
+  [[nodiscard]] std::size_t far() const { return rises >= falls ? far_falls : far_rises; }
+
   /// Steps that a sound record does not have, old to new or new to old.
   [[nodiscard]] std::size_t wrong() const {
     const bool is_rising = rises >= falls;
-    const std::size_t far = is_rising ? far_falls : far_rises;
+    const std::size_t far = this->far();
     const std::size_t all = same + (is_rising ? falls : rises);
     return far + (all - far) - std::min(all - far, kStepsFree);
   }
@@ -84,6 +87,11 @@ struct CandidateColumn {
   [[nodiscard]] std::size_t wrong() const {
     std::size_t all = 0;
     for (const auto& [text, group] : groups) all += group.wrong();
+    return all;
+  }
+  [[nodiscard]] std::size_t far() const {
+    std::size_t all = 0;
+    for (const auto& [text, group] : groups) all += group.far();
     return all;
   }
   [[nodiscard]] bool is_sound(std::size_t rows) const {
@@ -117,8 +125,8 @@ class ApartSearch {
     return {};
   }
 
-  /// The column that solves it: the one with the fewest groups, then the one that names meters,
-  /// then the one with words.
+  /// The column that solves it: the one with the fewest steps back, the fewest groups, then the one
+  /// that names meters, then the one with words.
   [[nodiscard]] const CandidateColumn* solution() const {
     const CandidateColumn* best = nullptr;
     for (const CandidateColumn& one : columns_) {
@@ -155,6 +163,7 @@ class ApartSearch {
 
  private:
   static bool is_better(const CandidateColumn& a, const CandidateColumn& b) {
+    if (a.far() != b.far()) return a.far() < b.far();
     if (a.groups.size() != b.groups.size()) return a.groups.size() < b.groups.size();
     if (a.is_text != b.is_text) return a.is_text;
     return names_a_meter(a.name) && !names_a_meter(b.name);

@@ -440,9 +440,41 @@ class RunCheck {
       run.end = i + 1;
     }
     finish(run, true);
+    for (const Run& stuck : stuck_) {
+      if (!comes_back(stuck.value_kW)) condemn_run(stuck, Reason::stuck);
+    }
   }
 
  private:
+  /// A meter that froze stands at another value each time. What comes back day by day is a load
+  /// that takes just so much, such as a car that is charged.
+  [[nodiscard]] bool comes_back(double value_kW) const {
+    std::ptrdiff_t runs = std::ranges::count(stuck_, value_kW, &Run::value_kW);
+    for (const MonthSlots* neighbour : {context_.before, context_.after}) {
+      if (runs >= kComesBack) break;
+      if (neighbour != nullptr) runs += long_runs(*neighbour, value_kW);
+    }
+    return runs >= kComesBack;
+  }
+
+  [[nodiscard]] std::ptrdiff_t long_runs(const MonthSlots& month, double value_kW) const {
+    std::ptrdiff_t runs = 0;
+    int length = 0;
+    for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
+      const double other_kW = reported_kW(month, i);
+      if (std::isnan(other_kW)) continue;
+      length = other_kW == value_kW ? length + 1 : 0;
+      if (length > 0 && length == stuck_max_ / month.grid->interval()) ++runs;
+    }
+    return runs;
+  }
+
+  void condemn_run(const Run& run, Reason reason) {
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      if (!std::isnan(reported_kW(month_, i))) condemn(month_, i, reason);
+    }
+  }
+
   void finish(Run run, bool last) {
     if (run.count == 0) return;
     if (first_) run.count += run_outside(context_.before, run.value_kW, true);
@@ -453,16 +485,20 @@ class RunCheck {
     const bool doubtful = zero ? zero_run_max_ && length > *zero_run_max_
                                : stuck_max_ > seconds{0} && length >= stuck_max_;
     if (!doubtful) return;
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      if (std::isnan(reported_kW(month_, i))) continue;
-      condemn(month_, i, zero ? Reason::zero_run : Reason::stuck);
+    if (zero) {
+      condemn_run(run, Reason::zero_run);
+    } else {
+      stuck_.push_back(run);
     }
   }
+
+  static constexpr std::ptrdiff_t kComesBack = 3;
 
   MonthSlots& month_;
   const ValidationContext& context_;
   std::optional<seconds> zero_run_max_;
   seconds stuck_max_;
+  std::vector<Run> stuck_;  ///< Too long; decided once all are known.
   bool first_ = true;
 };
 

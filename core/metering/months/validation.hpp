@@ -58,8 +58,9 @@ struct ValidationContext {
 ///   around, at any time of day. One is enough if half of the month's readings are 0 or a few
 ///   register steps, as with a boiler's gas meter.
 /// - stuck and zero_run: runs of equal values that reach the meter's limit, across month ends;
-///   blanks inside neither break a run nor count in it. Never of a counter: at rest it has measured
-///   a zero.
+///   blanks inside neither break a run nor count in it. A value that comes back in three such runs,
+///   here and in the months beside, is a load that takes just so much. Never of a counter: at rest
+///   it has measured a zero.
 ///
 /// O(slots). No state: the same month and neighbours give the same verdict.
 /// @see CalTRACK 2.2.1.4 for zeros; Hyndman's and utilities' spike rule with 180 %.

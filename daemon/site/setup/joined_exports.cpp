@@ -36,6 +36,7 @@ std::optional<double> share_alike(const SampledReadings& a, const SampledReading
   for (const auto& [start, value] : a.kept()) {
     const auto other = b.kept().find(start);
     if (other == b.kept().end()) continue;
+    if (value == 0.0 && other->second == 0.0) continue;  // many meters rest at night
     ++common;
     const double apart = std::abs(value - other->second);
     if (apart <= 1e-6 * std::max(std::abs(value), std::abs(other->second))) ++alike;
