@@ -26,7 +26,9 @@ constexpr std::size_t kChangeAlike = 6;  // of the steps between them are alike 
 constexpr std::size_t kChangeMin = 3;    // … or at the end of a file all, of so many
 constexpr seconds kOffsetGrid{900};      // the offsets of all zones since 1971 are multiples of it
 constexpr seconds kRegisterInterval{900};  // of registers that are logged now and then
-constexpr int kToleranceShare = 10;        // of an interval stamps may lie beside its start
+constexpr seconds kSpreadMax{86'400};      // values of days are spread
+constexpr seconds kClockChange{3600};
+constexpr int kToleranceShare = 10;  // of an interval stamps may lie beside its start
 
 Instant stamp_of(const WaitingRow& waiting) { return waiting.row.stamp; }
 
@@ -47,6 +49,10 @@ void put_on_grid(std::vector<metering::RegisterSample>& samples, seconds interva
     const Instant time = samples[i].time - beside;
     if (i == 0 || time > samples[i - 1].time) samples[i].time = time;
   }
+}
+
+seconds longest_step(const std::vector<RowStep>& steps) {
+  return std::ranges::max(steps, {}, &RowStep::step).step;
 }
 
 /// By more than intervals of clocks that run fast or slow are.
@@ -114,7 +120,10 @@ void ReadingIntake::take_first(IntakeMeter& meter, const Row& row) {
 void ReadingIntake::drop_coarse_head(IntakeMeter& meter) {
   const auto steps = steps_of(stamps_of(meter.head, kHeadRows, stamp_of));
   note_step(meter, meter.head.front().row, steps->commonest);
-  for (std::size_t i = 0; i < kHeadRows / 2; ++i) leave_out(meter, meter.head[i].row);
+  for (std::size_t i = 0; i < kHeadRows / 2; ++i) {
+    meter.longer_head.push_back(meter.head[i].row);
+    meter.longer_head.back().text = {};
+  }
   meter.head.erase(meter.head.begin(), meter.head.begin() + kHeadRows / 2);
 }
 
@@ -126,6 +135,10 @@ void ReadingIntake::begin_meter(IntakeMeter& meter) {
     set_scale(meter);
     meter.grid_known = true;
     if (sink_.on_meter) sink_.on_meter(meter.report.shown);
+    for (const Row& row : std::exchange(meter.longer_head, {})) {
+      take_longer(meter, row, row.stamp);
+      meter.last = meter.newest = row.stamp;
+    }
     for (auto& [row, text] : std::exchange(meter.head, {})) {
       Row first = row;
       first.text = text;
@@ -198,7 +211,8 @@ bool ReadingIntake::find_grid(IntakeMeter& meter) {
   const auto first = steps_of(stamps_of(meter.head, kFirstRows, stamp_of));
   if (first && !meter.is_irregular && first->share == 1.0) meter.step = first->commonest;
   note_step(meter, meter.head.front().row, meter.step);
-  const bool is_other = meter.step < shown.interval || !is_interval(meter.step);
+  // Rows of days have no part in intervals of hours.
+  const bool is_other = meter.step != shown.interval && !is_longer(meter.step, shown.interval);
   if (is_other || meter.is_irregular) use_means(meter);
   find_way(meter);
   return true;
@@ -305,15 +319,15 @@ void ReadingIntake::begin_step(IntakeMeter& meter, const Row& row, seconds step,
       metering::in_hours(meter.means ? meter.step : interval) / metering::in_hours(step);
   is_of_held = is_of_held && meter.rows.stamps == Stamps::start;
   meter.step = step;
-  // The row before was left out as one of the longer step, which ended at its stamp.
-  const auto before = std::exchange(meter.last_left_out, std::nullopt);
+  // The row before was taken for one of the longer step, which ended at its stamp.
   const bool is_interval_now = step == interval && !meter.means;
-  if (is_of_held && is_interval_now && before && before->stamp == row.stamp - step) {
-    --meter.report.steps.back().left_out;
+  if (is_of_held && is_interval_now && meter.longer && meter.longer->stamp == row.stamp - step) {
+    const Row before = *std::exchange(meter.longer, std::nullopt);
     --meter.left_out;
-    hold(meter, reading_of(meter, *before, before->stamp));
-    return note_step(meter, *before, step);
+    hold(meter, reading_of(meter, before, before.stamp));
+    return note_step(meter, before, step);
   }
+  end_longer(meter, row.stamp);
   note_step(meter, row, step);
   if (is_of_held && meter.held) {
     const Reading held = *std::exchange(meter.held, std::nullopt);
@@ -325,7 +339,7 @@ void ReadingIntake::begin_step(IntakeMeter& meter, const Row& row, seconds step,
     meter.open->length = step;
     if (!meter.open->is_rate) meter.open->value.mean_kW *= shorter;
   }
-  if (step < interval || meter.means || !is_interval(step)) use_means(meter);
+  if (meter.means || (step != interval && !is_longer(step, interval))) use_means(meter);
 }
 
 void ReadingIntake::note_step(IntakeMeter& meter, const Row& row, seconds step) {
@@ -343,6 +357,7 @@ void ReadingIntake::place(IntakeMeter& meter, const Row& row, Instant stamp) {
     meter.newest.reset();
     if (std::exchange(meter.means, std::nullopt)) use_means(meter);
   }
+  end_longer(meter, stamp);
   ++meter.placed;
   const bool follows =
       meter.last && stamp == *meter.last + meter.step && meter.last == meter.newest;
@@ -355,7 +370,7 @@ void ReadingIntake::place(IntakeMeter& meter, const Row& row, Instant stamp) {
     if (!follows) check_order(meter, row, start);
   }
   if (is_left_out) {
-    leave_out(meter, row);
+    take_longer(meter, row, stamp);
   } else if (meter.means) {
     add_to_means(meter, row, stamp);
   } else {
@@ -365,10 +380,51 @@ void ReadingIntake::place(IntakeMeter& meter, const Row& row, Instant stamp) {
   if (!meter.newest || stamp > *meter.newest) meter.newest = stamp;
 }
 
+/// Takes a row of a step that is longer than the interval. The values of days count evenly over
+/// their time: their sums are right, their shapes are not known.
+void ReadingIntake::take_longer(IntakeMeter& meter, const Row& row, Instant stamp) {
+  const seconds length = longest_step(meter.report.steps);
+  if (length <= kIntervalMax || length > kSpreadMax || meter.means) return leave_out(meter, row);
+  ++meter.left_out;
+  if (meter.rows.stamps == Stamps::end) {
+    const seconds since = meter.last ? stamp - *meter.last : length;
+    const bool follows = std::chrono::abs(since - length) <= kClockChange;
+    return spread(meter, row, {stamp - (follows ? since : length), stamp});
+  }
+  end_longer(meter, stamp);
+  meter.longer = row;
+  meter.longer->text = {};
+}
+
+/// Of starts, the next row ends the time of the one before.
+void ReadingIntake::end_longer(IntakeMeter& meter, Instant next) {
+  if (!meter.longer) return;
+  const Row row = *std::exchange(meter.longer, std::nullopt);
+  const seconds length = longest_step(meter.report.steps);
+  const seconds until = next - row.stamp;
+  const bool follows = std::chrono::abs(until - length) <= kClockChange;
+  spread(meter, row, {row.stamp, row.stamp + (follows ? until : length)});
+}
+
+void ReadingIntake::spread(IntakeMeter& meter, const Row& row, const metering::TimeSpan& span) {
+  const MeterInFile& shown = meter.report.shown;
+  const bool is_on_grid =
+      (span.begin.time_since_epoch() - shown.phase) % shown.interval == seconds{0};
+  if (!is_on_grid || !std::isfinite(row.value) || !check_known_years(meter, row, span.begin))
+    return;
+  if (meter.held) pass_on(meter, *std::exchange(meter.held, std::nullopt));
+  const double mean_kW = row.conversion.mean_kW(row.value * meter.rows.multiplier, span.length());
+  for (Instant t = span.begin; t + shown.interval <= span.end; t += shown.interval) {
+    pass_on(meter, {shown.meter, t, mean_kW, metering::Validity::scaled,
+                    metering::Reason::estimated, row.late});
+  }
+  const auto of_it =
+      std::ranges::find(meter.report.steps, longest_step(meter.report.steps), &RowStep::step);
+  ++of_it->spread;
+}
+
 void ReadingIntake::leave_out(IntakeMeter& meter, const Row& row) {
   ++meter.left_out;
-  meter.last_left_out = row;
-  meter.last_left_out->text = {};
   RowStep& step = meter.report.steps.back();
   if (step.left_out++ > 0) return;
   refuse(row.line,
@@ -500,6 +556,7 @@ Result<FileReport> ReadingIntake::end_file(std::string_view name) {
 
 /// Passes on the latest values, whose lengths the next one would show.
 void ReadingIntake::pass_on_all(IntakeMeter& meter) {
+  if (meter.longer) end_longer(meter, meter.longer->stamp + longest_step(meter.report.steps));
   if (meter.held) pass_on(meter, *std::exchange(meter.held, std::nullopt));
   close_open(meter, {});
   if (meter.means) meter.means->finish([&](const Reading& one) { pass_on(meter, one); });

@@ -67,10 +67,11 @@ struct IntakeMeter {
   std::optional<metering::Instant> first_start;  ///< Of readings passed on: the earliest start
   std::optional<metering::Instant> last_start;   ///< … and the latest.
   // In this file:
-  std::uint64_t placed = 0;          ///< Rows.
-  std::uint64_t follows = 0;         ///< Of these, rows directly after the previous one.
-  std::uint64_t left_out = 0;        ///< Of these, rows at a step that is longer than the interval.
-  std::optional<Row> last_left_out;  ///< Of starts, it may be the first of a shorter step.
+  std::uint64_t placed = 0;      ///< Rows.
+  std::uint64_t follows = 0;     ///< Of these, rows directly after the previous one.
+  std::uint64_t left_out = 0;    ///< Of these, rows at a step that is longer than the interval.
+  std::optional<Row> longer;     ///< The latest row of a longer step; the next one ends its time.
+  std::vector<Row> longer_head;  ///< Such rows, before the interval was known.
   bool has_earlier_file = false;
   bool begins_file = false;  ///< No row of this file has been placed.
 };
@@ -144,6 +145,9 @@ class ReadingIntake {
   static void note_step(IntakeMeter& meter, const Row& row, std::chrono::seconds step);
   void place(IntakeMeter& meter, const Row& row, metering::Instant stamp);
   void leave_out(IntakeMeter& meter, const Row& row);
+  void take_longer(IntakeMeter& meter, const Row& row, metering::Instant stamp);
+  void end_longer(IntakeMeter& meter, metering::Instant next);
+  void spread(IntakeMeter& meter, const Row& row, const metering::TimeSpan& span);
   void add_to_means(IntakeMeter& meter, const Row& row, metering::Instant stamp);
   void close_open(IntakeMeter& meter, std::optional<metering::Instant> until);
   bool check_known_years(IntakeMeter& meter, const Row& row, metering::Instant start);

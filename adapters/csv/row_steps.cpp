@@ -66,6 +66,10 @@ std::vector<std::string> step_sentences(std::span<const RowStep> steps, seconds 
                                      metering::to_string(one.stamp) + ") on its rows come every " +
                                      in_words(one.step) + ", before that every " +
                                      in_words(steps[i - 1].step);
+    if (one.spread > 0) {
+      words += "; each of these " + std::to_string(one.spread) +
+               " counts evenly over its time, as an estimate: sums are right, peaks are not";
+    }
     if (one.left_out > 0) {
       words += "; these " + std::to_string(one.left_out) + " rows are left out, for " +
                (one.step > kIntervalMax
@@ -73,7 +77,7 @@ std::vector<std::string> step_sentences(std::span<const RowStep> steps, seconds 
                     : "they are longer than its interval of " + in_words(interval) +
                           "; write interval = \"" + std::to_string(one.step.count() / 60) +
                           "m\" to have both");
-    } else if (!is_usual) {
+    } else if (!is_usual && one.spread == 0) {
       words += "; its intervals of " + in_words(interval) + " are means of them";
     }
     sentences.push_back(words + ".");

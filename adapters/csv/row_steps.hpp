@@ -21,6 +21,7 @@ struct RowStep {
   metering::Instant stamp;  ///< Of that row.
   std::chrono::seconds step;
   std::uint64_t left_out = 0;  ///< Rows, because the step is longer than the meter's interval.
+  std::uint64_t spread = 0;    ///< Rows of days, each counted evenly over its time.
 };
 
 /// The distances between neighbouring stamps.

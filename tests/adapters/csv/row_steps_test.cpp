@@ -192,7 +192,8 @@ TEST_P(Steps, LongerRowsAreLeftOutAndTold) {
   EXPECT_THAT(words[0], HasSubstr("interval = \"60m\""));
 }
 
-TEST_P(Steps, DaysBeforeHoursAreLeftOut) {
+// Each day's amount counts in its own hours; where hours begin, they are as they were measured.
+TEST_P(Steps, DaysBeforeHoursCountEvenly) {
   for (const int rows : {5, 30, 70, 400}) {
     SCOPED_TRACE(rows);
     File made = file();
@@ -201,13 +202,19 @@ TEST_P(Steps, DaysBeforeHoursAreLeftOut) {
     made.add(hours{1}, 200);
     const Outcome outcome = made.read();
     EXPECT_EQ(outcome.interval(), hours{1});
-    EXPECT_NEAR(outcome.sum_kWh(), energy_kWh(first, made.end), 25.0);
+    EXPECT_EQ(std::ssize(outcome.readings), (made.end - kStart) / hours{1});
+    EXPECT_NEAR(outcome.sum_kWh(), energy_kWh(kStart, made.end), 0.1);
     for (const Reading& one : outcome.readings) {
-      EXPECT_NEAR(one.mean_kW, energy_kWh(one.start, one.start + hours{1}), 1e-3);
+      const bool is_of_day = one.start < first;
+      EXPECT_EQ(one.validity == metering::Validity::scaled, is_of_day);
+      const Instant begin = is_of_day ? std::chrono::floor<days>(one.start) : one.start;
+      const seconds length = is_of_day ? seconds{days{1}} : seconds{3600};
+      EXPECT_NEAR(one.mean_kW, energy_kWh(begin, begin + length) / metering::in_hours(length),
+                  1e-3);
     }
     const auto words = step_sentences(outcome.report.meters[0].steps, hours{1});
     ASSERT_FALSE(words.empty());
-    EXPECT_THAT(words[0], HasSubstr("an hour or less"));
+    EXPECT_THAT(words[0], HasSubstr("counts evenly over its time"));
   }
 }
 
