@@ -161,8 +161,9 @@ void MeterParts::hand_out(std::size_t meter, csv::MeterReport& report) const {
     for (const KeptReading& one : part.readings) aligned.starts.push_back(one.start);
   }
   std::ranges::sort(aligned.starts);
-  const auto same = std::ranges::unique(aligned.starts);
-  aligned.starts.erase(same.begin(), same.end());
+  // clang 14 cannot compile what std::ranges::unique returns.
+  aligned.starts.erase(std::unique(aligned.starts.begin(), aligned.starts.end()),
+                       aligned.starts.end());
   aligned.values.assign(all.size(), std::vector<double>(aligned.starts.size(), kAbsent));
   aligned.are_estimates.assign(aligned.starts.size(), false);
   for (std::size_t part = 0; part < all.size(); ++part) {
