@@ -475,8 +475,9 @@ class UnratedPushedMeter : public PushedMeterSite {
 TEST_F(UnratedPushedMeter, ValuesThatOnlyRiseAreDoubted) {
   std::string list;
   for (int i = 0; i < 4; ++i) {
-    list += fmt::format(R"({}{{"time":"{}","value":{}}})", i == 0 ? "" : ",",
-                        metering::to_string(kStart - hours{3} + i * minutes{15}), 182034.5 + 3.6 * i);
+    list +=
+        fmt::format(R"({}{{"time":"{}","value":{}}})", i == 0 ? "" : ",",
+                    metering::to_string(kStart - hours{3} + i * minutes{15}), 182034.5 + 3.6 * i);
   }
   const Json said = taken(fmt::format(R"({{"meter":"chw","unit":"kWh","readings":[{}]}})", list));
   EXPECT_THAT(said["doubt"].get<std::string>(), HasSubstr("counter = { unit = \"kWh\" }"));

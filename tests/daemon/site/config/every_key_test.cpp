@@ -115,27 +115,13 @@ TEST_F(EveryKey, NumbersAreFiniteAndWithinReason) {
 }
 
 TEST_F(EveryKey, WordsAreKnownOnes) {
-  const std::set<std::string> free{"name",
-                                   "file",
-                                   "name_in_file",
-                                   "host",
-                                   "token_file",
-                                   "certificate_file",
-                                   "key_file",
-                                   "backup_folder",
-                                   "design",
-                                   "time_column",
-                                   "column",
-                                   "clock_column",
-                                   "meter_column",
-                                   "unit_column",
-                                   "flag_column",
-                                   "sheet",
-                                   "currency",
-                                   "program",
-                                   "user",
-                                   "password_file",
-                                   "trusted_certificate",
+  const std::set<std::string> free{"name",         "file",          "name_in_file",
+                                   "host",         "token_file",    "certificate_file",
+                                   "key_file",     "backup_folder", "design",
+                                   "time_column",  "column",        "clock_column",
+                                   "meter_column", "unit_column",   "flag_column",
+                                   "sheet",        "currency",      "program",
+                                   "user",         "password_file", "trusted_certificate",
                                    "url"};
   for (const Entry& entry : entries_) {
     if (entry.type != toml::node_type::string || free.contains(entry.key)) continue;
