@@ -255,6 +255,20 @@ void fit_clock_format(TomlReader& table, MeterConfig& config) {
   }
 }
 
+/// The files of a recorded meter and its rows in them.
+void read_files(TomlReader& table, const SiteConfig& site, MeterConfig& config) {
+  if (!table.has("file")) table.problem("'file' is missing");
+  for (const std::string& file : table.one_or_more("file").value_or(std::vector<std::string>{})) {
+    config.files.push_back(resolve(site.file, file, "file", table));
+  }
+  config.further_names = table.one_or_more("name_in_file").value_or(std::vector{config.meter.id});
+  if (!config.further_names.empty()) {
+    config.name_in_file = config.further_names.front();
+    config.further_names.erase(config.further_names.begin());
+  }
+  config.stamps = read_stamps(table);
+}
+
 MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& maps) {
   MeterConfig config;
   metering::Meter& meter = config.meter;
@@ -271,16 +285,7 @@ MeterConfig read_meter(TomlReader& table, const SiteConfig& site, RegisterMaps& 
   if (is_polled) {
     config.live = read_live_meter(table, maps);
   } else if (config.source == MeterSource::csv) {
-    if (!table.has("file")) table.problem("'file' is missing");
-    for (const std::string& file : table.one_or_more("file").value_or(std::vector<std::string>{})) {
-      config.files.push_back(resolve(site.file, file, "file", table));
-    }
-    config.further_names = table.one_or_more("name_in_file").value_or(std::vector{meter.id});
-    if (!config.further_names.empty()) {
-      config.name_in_file = config.further_names.front();
-      config.further_names.erase(config.further_names.begin());
-    }
-    config.stamps = read_stamps(table);
+    read_files(table, site, config);
   }
   config.interval = read_interval(table, "interval");
   if (config.source == MeterSource::csv) {

@@ -957,6 +957,36 @@ Result<void> find_clock_format(SurveyedExport& survey, const metering::LocalCale
   return {};
 }
 
+/// The clock that the name of its time column says, and what else of the guess should be looked at.
+Result<void> take_words_of_guess(SurveyedExport& survey, table::TableGuess& guess) {
+  const std::filesystem::path& file = survey.files.front();
+  if (const auto said = table::offset_said(guess.shape.time_column); said && !guess.has_offsets) {
+    const auto zone = zone_of_offset(*said);
+    if (!zone) {
+      return about(file,
+                   {ErrorCode::unsupported,
+                    "column " + csv::in_quotes(guess.shape.time_column) +
+                        " has an offset that is no whole hour, which no zone of a fixed clock "
+                        "has; export its times in UTC"});
+    }
+    guess.shape.timezone = *said == seconds{0} ? "Etc/UTC" : *zone;
+    survey.clock_because = "by the time column's name";
+  }
+  const std::string name = file.filename().string();
+  if (!guess.ignored.empty()) {
+    survey.notes.push_back(
+        fmt::format("{}: columns not used: {}.", name, fmt::join(guess.ignored, ", ")));
+  }
+  if (guess.decimal_because.starts_with("guessed")) {
+    survey.notes.push_back(fmt::format("{}: the decimal sign is '{}', {}.", name,
+                                       guess.shape.decimal, guess.decimal_because));
+  }
+  for (const std::string& note : guess.notes) {
+    survey.notes.push_back(fmt::format("{}: {}", name, note));
+  }
+  return {};
+}
+
 Result<SurveyedExport> described_export(const std::filesystem::path& file,
                                         const SurveyHints& hints) {
   SurveyedExport survey{.files = {file}};
@@ -1000,30 +1030,7 @@ Result<SurveyedExport> described_export(const std::filesystem::path& file,
     survey.meters = std::move(*meters);
     name_by_values(*guess, survey.meters);
   }
-  if (const auto said = table::offset_said(guess->shape.time_column); said && !guess->has_offsets) {
-    const auto zone = zone_of_offset(*said);
-    if (!zone) {
-      return about(file,
-                   {ErrorCode::unsupported,
-                    "column " + csv::in_quotes(guess->shape.time_column) +
-                        " has an offset that is no whole hour, which no zone of a fixed clock "
-                        "has; export its times in UTC"});
-    }
-    guess->shape.timezone = *said == seconds{0} ? "Etc/UTC" : *zone;
-    survey.clock_because = "by the time column's name";
-  }
-  if (!guess->ignored.empty()) {
-    survey.notes.push_back(fmt::format("{}: columns not used: {}.", file.filename().string(),
-                                       fmt::join(guess->ignored, ", ")));
-  }
-  if (guess->decimal_because.starts_with("guessed")) {
-    survey.notes.push_back(fmt::format("{}: the decimal sign is '{}', {}.",
-                                       file.filename().string(), guess->shape.decimal,
-                                       guess->decimal_because));
-  }
-  for (const std::string& note : guess->notes) {
-    survey.notes.push_back(fmt::format("{}: {}", file.filename().string(), note));
-  }
+  TRY(take_words_of_guess(survey, *guess));
   leave_out_other_quantities(survey);
   survey.table = std::move(*guess);
   return survey;
@@ -1105,12 +1112,49 @@ Result<void> take_loads(SurveyedExport& survey, const metering::LocalCalendar& c
   if (loads.empty()) return {};
   join_loads(loads, survey.meters);
   const auto whole = TRY(read_whole(survey, calendar));
+  const std::vector<std::string> known = survey.notes;
   take_results(survey, whole, calendar);
+  // Of the other meters the same is said again.
+  const auto added = survey.notes.begin() + std::ssize(known);
+  survey.notes.erase(std::remove_if(added, survey.notes.end(),
+                                    [&](const std::string& note) {
+                                      return std::ranges::find(known, note) != known.end();
+                                    }),
+                     survey.notes.end());
   return {};
 }
 
 bool is_without_zone(const SurveyedExport& survey) {
   return survey.table && !survey.table->has_offsets && survey.table->shape.timezone.empty();
+}
+
+/// Reads it the way that its rows show: rows told apart, flags, registers, steps, its clock.
+Result<WholeFile> read_as_it_shows(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                                   const SurveyHints& hints) {
+  TRY(find_clock_format(survey, calendar, hints.clock_format));
+  auto whole = TRY(read_whole(survey, calendar));
+  if (survey.table) TRY(tell_rows_apart(survey, calendar, whole));
+  const bool has_flags = learn_flags(survey, whole);
+  const bool has_registers = take_registers_of_others(survey, hints);
+  if (learn_from_rows(survey, calendar, whole) || has_flags || has_registers) {
+    whole = TRY(read_whole(survey, calendar));
+  }
+  if (survey.table) TRY(try_fixed_clock(survey, calendar, whole));
+  return whole;
+}
+
+/// What was left out or came twice.
+void note_what_is_lost(SurveyedExport& survey, const WholeFile& whole) {
+  const std::string name = survey.files.front().filename().string();
+  if (whole.clock.words > 0) {
+    survey.notes.push_back(fmt::format("{}: {} cells such as {} count as no value.", name,
+                                       whole.clock.words, csv::in_quotes(whole.clock.first_word)));
+  }
+  if (whole.report.issues.total > 0) {
+    survey.notes.push_back(fmt::format("{}: {} of {} rows are refused or come twice; {}.", name,
+                                       whole.report.issues.total, whole.report.lines,
+                                       first_issue(whole.report.issues)));
+  }
 }
 
 }  // namespace
@@ -1146,26 +1190,8 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
     clock = TRY(metering::LocalCalendar::open("Etc/UTC"));
     if (survey->table) survey->utc_offset = first_offset(file, *survey->table);
   }
-  if (auto found = find_clock_format(*survey, *clock, hints.clock_format); !found)
-    return about(file, found.error());
-  auto whole = read_whole(*survey, *clock);
+  const auto whole = read_as_it_shows(*survey, *clock, hints);
   if (!whole) return about(file, whole.error());
-  if (survey->table) {
-    if (auto told = tell_rows_apart(*survey, *clock, *whole); !told) {
-      return about(file, told.error());
-    }
-  }
-  const bool has_flags = learn_flags(*survey, *whole);
-  const bool has_registers = take_registers_of_others(*survey, hints);
-  if (learn_from_rows(*survey, *clock, *whole) || has_flags || has_registers) {
-    whole = read_whole(*survey, *clock);
-    if (!whole) return about(file, whole.error());
-  }
-  if (survey->table) {
-    if (auto tried = try_fixed_clock(*survey, *clock, *whole); !tried) {
-      return about(file, tried.error());
-    }
-  }
   TRY(require_sound(*survey, *whole));
   for (const std::string& note : whole->clock.notes) {
     survey->notes.push_back(fmt::format("{}: {}.", file.filename().string(), note));
@@ -1185,16 +1211,7 @@ Result<SurveyedExport> survey_export(const std::filesystem::path& file,
     return failure(ErrorCode::not_enough_data,
                    fmt::format("'{}': no meter has a value that can be used", file.string()));
   }
-  if (whole->clock.words > 0) {
-    survey->notes.push_back(fmt::format("{}: {} cells such as {} count as no value.",
-                                        file.filename().string(), whole->clock.words,
-                                        csv::in_quotes(whole->clock.first_word)));
-  }
-  if (whole->report.issues.total > 0) {
-    survey->notes.push_back(fmt::format("{}: {} of {} rows are refused or come twice; {}.",
-                                        file.filename().string(), whole->report.issues.total,
-                                        whole->report.lines, first_issue(whole->report.issues)));
-  }
+  note_what_is_lost(*survey, *whole);
   return survey;
 }
 
