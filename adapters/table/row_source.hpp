@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "core/text/printable.hpp"
 
 namespace recald::table {
 
@@ -30,8 +31,17 @@ class RowSource {
   virtual bool next(TableRow& row) = 0;
   [[nodiscard]] virtual const std::optional<Error>& error() const = 0;
 
-  /// What readers should be told, a sentence each, once all rows have been read.
-  [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
+  /// What readers should be told, a sentence each, once all rows have been read; names that the
+  /// file chose are printable in it.
+  [[nodiscard]] std::vector<std::string> notes() const {
+    std::vector<std::string> sentences = said();
+    for (std::string& sentence : sentences) sentence = printable(sentence);
+    return sentences;
+  }
+
+ private:
+  /// The notes, with names as the file writes them.
+  [[nodiscard]] virtual std::vector<std::string> said() const { return {}; }
 };
 
 }  // namespace recald::table

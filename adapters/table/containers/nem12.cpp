@@ -51,14 +51,14 @@ class Nem12Rows final : public RowSource {
     return error_ ? error_ : lines_->error();
   }
 
-  [[nodiscard]] std::vector<std::string> notes() const override {
+ private:
+  [[nodiscard]] std::vector<std::string> said() const override {
     if (left_out_.empty()) return {};
     std::string words = "channels without energy are left out: ";
     for (const std::string& one : left_out_) words += (one == *left_out_.begin() ? "" : ", ") + one;
     return {std::move(words)};
   }
 
- private:
   bool hand_out_header(TableRow& row) {
     is_header_out_ = true;
     row = {};

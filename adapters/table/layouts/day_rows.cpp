@@ -249,9 +249,10 @@ class DayRows final : public RowSource {
   [[nodiscard]] const std::optional<Error>& error() const override {
     return error_ ? error_ : table_->error();
   }
-  [[nodiscard]] std::vector<std::string> notes() const override { return notes_; }
 
  private:
+  [[nodiscard]] std::vector<std::string> said() const override { return notes_; }
+
   /// Rows above the header as they are, then the new header.
   bool next_above(TableRow& row) {
     if (error_) return false;

@@ -49,9 +49,10 @@ class JoinedNames final : public RowSource {
   }
 
   [[nodiscard]] const std::optional<Error>& error() const override { return rows_->error(); }
-  [[nodiscard]] std::vector<std::string> notes() const override { return rows_->notes(); }
 
  private:
+  [[nodiscard]] std::vector<std::string> said() const override { return rows_->notes(); }
+
   bool find_places(const std::vector<std::string>& header) {
     std::vector<std::size_t> places;
     for (const std::string& column : columns_) {
@@ -93,9 +94,10 @@ class TitledRows final : public RowSource {
   }
 
   [[nodiscard]] const std::optional<Error>& error() const override { return rows_->error(); }
-  [[nodiscard]] std::vector<std::string> notes() const override { return rows_->notes(); }
 
  private:
+  [[nodiscard]] std::vector<std::string> said() const override { return rows_->notes(); }
+
   bool is_header(const TableRow& row) {
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       if (row.cells[i].empty() || utf8_of(row.cells[i]) != time_column_) continue;

@@ -52,6 +52,14 @@ TEST(Nem12, ChannelsAndDaysOnTheMarketsClock) {
   }
 }
 
+TEST(Nem12, NamesInNotesArePrintable) {
+  std::vector<std::string> notes;
+  rows_of(
+      channel("Q1", std::string{"kV\x1B\0\tArh", 8}, 30) + day("20240203", 30, 1, "A") + "900\n",
+      &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr(R"(Q1 (kV\x1B\x00\x09Arh))")));
+}
+
 TEST(Nem12, RangesOfQualityAndMissingValues) {
   const auto kept = rows_of(channel("E1", "kWh", 30) + day("20240203", 30, 1, "V") +
                             "400,1,2,A,,\n400,3,5,S14,51,\n400,6,48,N,,\n" +
