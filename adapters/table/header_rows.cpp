@@ -102,6 +102,7 @@ HeaderRows find_header_rows(std::span<const KeptRow* const> rows, const TimeColu
   }
   header.above = highest;
   std::size_t most = 0;
+  const KeptRow* named = nullptr;
   for (std::size_t i = highest; i <= lowest; ++i) {
     add_texts(*rows[i], i == lowest && !has_units, times.column, header.texts);
     const std::set<std::string_view> different{rows[i]->cells.begin(), rows[i]->cells.end()};
@@ -109,8 +110,9 @@ HeaderRows find_header_rows(std::span<const KeptRow* const> rows, const TimeColu
         2 * different.size() + (cell_of(*rows[i], times.column).empty() ? 0 : 3);
     if (names < most) continue;
     most = names;
-    header.names = rows[i];
+    named = rows[i];
   }
+  for (const std::string& cell : named->cells) header.names.push_back(squeezed(cell));
   for (std::string& text : header.texts) text = squeezed(text);
   return header;
 }

@@ -11,7 +11,7 @@
 namespace recald::table {
 
 struct HeaderRows {
-  const KeptRow* names = nullptr;  ///< By whose texts columns are found again; none: no header.
+  std::vector<std::string> names;  ///< By which columns are found again, squeezed; none: no header.
   const KeptRow* units = nullptr;  ///< A row of units below the names.
   std::vector<std::string> texts;  ///< Of each column, the rows of the header one after the other.
   std::size_t above = 0;           ///< Rows above the header.

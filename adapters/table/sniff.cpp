@@ -136,7 +136,7 @@ class TableSniffer {
   }
 
   [[nodiscard]] std::string_view header_text(std::size_t column) const {
-    return header_.names == nullptr ? std::string_view{} : cell_of(*header_.names, column);
+    return column < header_.names.size() ? std::string_view{header_.names[column]} : "";
   }
 
   /// The name by which the column is found again.
@@ -147,7 +147,7 @@ class TableSniffer {
       if (header_text(i) == text) first = i;
     }
     if (text.empty() || first != column) return "#" + std::to_string(column + 1);
-    return squeezed(text);
+    return std::string{text};
   }
 
   /// All that the header says of a column, or how a message names it.

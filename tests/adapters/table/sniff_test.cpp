@@ -323,6 +323,25 @@ TEST(Sniff, ATimeWithoutAHeaderIsFound) {
   EXPECT_EQ(one.values[0].unit, "kWh");
 }
 
+// What nobody sees is no name, and two columns whose names look alike are told apart.
+TEST(Sniff, AHeaderOfUnseenCharactersIsNone) {
+  for (const std::string unseen : {"\b\b", "\xE2\x80\x8B", "\xC2\xA0\x01", "\t"}) {
+    const TableGuess blank = guess(half_hours(
+        {"time", unseen, "a" + unseen + " kWh", "a kWh" + unseen}, 2,
+        [](int i, const std::string& date, const std::string& time) {
+          return std::vector<std::string>{date + " " + time, load(i), load(i + 1), load(i + 5)};
+        }));
+    for (const GuessedColumn& value : blank.values) EXPECT_NE(value.column, "");
+    EXPECT_THAT(columns_of(blank), ::testing::Contains("#2"));
+  }
+  const TableGuess alike =
+      guess(half_hours({"time", "a\n(kWh)", "a (kWh)"}, 2,
+                       [](int i, const std::string& date, const std::string& time) {
+                         return std::vector<std::string>{date + " " + time, load(i), load(i + 9)};
+                       }));
+  EXPECT_EQ(columns_of(alike), (std::vector<std::string>{"a (kWh)", "#3"}));
+}
+
 TEST(Sniff, StartsAreRatherTakenThanEnds) {
   struct Names {
     const char* from;
