@@ -26,10 +26,6 @@ double mean_of(const MonthSlots& month, int from, int to) {
   return count > 0 ? sum / count : kAbsent;
 }
 
-bool has_values(const MonthSlots& month, int from, int to) {
-  return !std::isnan(mean_of(month, from, to));
-}
-
 /// The first slot of the hour that a clock change repeats, on its day; nothing on other days.
 std::optional<int> repeated_hour(const MonthGrid& grid, int begin, int end) {
   for (int slot = begin + 1; slot < end; ++slot) {
@@ -110,9 +106,41 @@ std::vector<DataFinding> unit_changes(std::string_view meter, const std::vector<
 
 }  // namespace
 
+/// Where the two passes of a repeated hour stand if a file has one row for both. A file of starts
+/// has them in the first pass; one of ends an interval earlier, as its clock shows the first end
+/// of the second pass as the last of the hour before, or, if an end is its begin's time plus the
+/// interval, with the last end where the second pass ends.
+std::optional<SeriesDoubts::SummedHour> SeriesDoubts::summed_hour(const MonthSlots& month,
+                                                                  int first, int per_hour) {
+  struct Pattern {
+    int summed_from;  ///< Slots after the first …
+    int summed;       ///< … and how many in a row.
+    bool is_last_summed;
+  };
+  const int second = first + per_hour;
+  const double beside = 0.5 * (mean_of(month, first - 1 - per_hour, first - 1) +
+                               mean_of(month, second + per_hour, second + 2 * per_hour));
+  for (const Pattern& pattern : {Pattern{0, per_hour, false}, Pattern{-1, per_hour, false},
+                                 Pattern{0, per_hour - 1, true}}) {
+    const int begin = first + pattern.summed_from;
+    const int end = begin + pattern.summed;
+    double sum_kW = 0.0;
+    for (int slot = begin; slot < end; ++slot) sum_kW += mean_of(month, slot, slot + 1);
+    if (pattern.is_last_summed) sum_kW += mean_of(month, second + per_hour - 1, second + per_hour);
+    const bool stands_once = std::isnan(mean_of(month, end, end + per_hour));
+    const double ratio = sum_kW / per_hour / beside;
+    constexpr double kSummedMin = 1.6;
+    constexpr double kSummedMax = 2.4;
+    if (!stands_once || !(ratio > kSummedMin && ratio < kSummedMax)) continue;
+    return SummedHour{{month.grid->start(begin), month.grid->start(second + per_hour)}, ratio};
+  }
+  return {};
+}
+
 void SeriesDoubts::take(const MonthSlots& month) {
   const MonthGrid& grid = *month.grid;
   OneMonth& one = months_[grid.month()] = {};
+  find_higher_estimate(month);
   const int per_hour = static_cast<int>(std::chrono::hours{1} / grid.interval());
   for (int day = 0; day < grid.days(); ++day) {
     const int begin = grid.day_begins()[static_cast<std::size_t>(day)];
@@ -120,17 +148,66 @@ void SeriesDoubts::take(const MonthSlots& month) {
     one.days_kW.push_back(mean_of(month, begin, end));
     const auto first = repeated_hour(grid, begin, end);
     if (!first || per_hour < 1) continue;
-    const int second = *first + per_hour;
-    const bool stands_once =
-        has_values(month, *first, second) && !has_values(month, second, second + per_hour);
-    const double beside = 0.5 * (mean_of(month, *first - per_hour, *first) +
-                                 mean_of(month, second + per_hour, second + 2 * per_hour));
-    const double ratio = mean_of(month, *first, second) / beside;
-    constexpr double kSummedMin = 1.6;
-    constexpr double kSummedMax = 2.4;
-    if (!stands_once || !(ratio > kSummedMin && ratio < kSummedMax)) continue;
-    one.summed.push_back({{grid.start(*first), grid.start(second + per_hour)}, ratio});
+    if (const auto hour = summed_hour(month, *first, per_hour)) one.summed.push_back(*hour);
   }
+}
+
+/// A peak is measured; a higher value that its source calls an estimate may have been one.
+void SeriesDoubts::find_higher_estimate(const MonthSlots& month) {
+  constexpr double kHigher = 1.002;  // less is no news
+  const auto highest = [&](const auto& counts) {
+    int found = -1;
+    for (int slot = 0; slot < month.slots(); ++slot) {
+      const auto i = static_cast<std::size_t>(slot);
+      if (!counts(i)) continue;
+      if (found < 0 || month.measured_kW[i] > month.measured_kW[static_cast<std::size_t>(found)]) {
+        found = slot;
+      }
+    }
+    return found;
+  };
+  const int estimate = highest([&](std::size_t i) {
+    return month.validity[i] == Validity::scaled && has(month.reasons[i], Reason::estimated) &&
+           !std::isnan(month.measured_kW[i]);
+  });
+  if (estimate < 0) return;
+  const int measured = highest([&](std::size_t i) { return month.validity[i] == Validity::ok; });
+  if (measured < 0) return;  // such a month has no peak
+  const double estimate_kW = month.measured_kW[static_cast<std::size_t>(estimate)];
+  const double measured_kW = month.measured_kW[static_cast<std::size_t>(measured)];
+  if (estimate_kW <= kHigher * measured_kW) return;
+  months_[month.grid->month()].higher_estimate = {month.grid->start(estimate), estimate_kW,
+                                                  measured_kW};
+}
+
+std::optional<DataFinding> SeriesDoubts::higher_estimates(std::string_view meter) const {
+  std::optional<HigherEstimate> farthest;
+  int count = 0;
+  for (const auto& [month, one] : months_) {
+    if (!one.higher_estimate) continue;
+    ++count;
+    const HigherEstimate& here = *one.higher_estimate;
+    if (!farthest ||
+        here.estimate_kW * farthest->measured_kW > farthest->estimate_kW * here.measured_kW) {
+      farthest = here;
+    }
+  }
+  if (!farthest) return {};
+  std::array<char, 160> values{};
+  std::snprintf(
+      values.data(), values.size(),
+      "%d month%s a value that its quality flag calls an estimate is higher than the peak, "
+      "which counts measured ones: ",
+      count, count == 1 ? "" : "s");
+  std::array<char, 64> kW{};
+  std::snprintf(kW.data(), kW.size(), "%.4g kW beside a peak of %.4g kW", farthest->estimate_kW,
+                farthest->measured_kW);
+  return DataFinding{.meter = std::string{meter},
+                     .sentence = std::string{"In "} + values.data() + kW.data() + " (" +
+                                 (count > 1 ? "most so " : "") + to_string(farthest->at) + ").",
+                     .span = {farthest->at, farthest->at},
+                     .slots = count,
+                     .grade = DataFinding::Grade::warning};
 }
 
 std::vector<DataFinding> SeriesDoubts::describe(std::string_view meter) const {
@@ -157,6 +234,7 @@ std::vector<DataFinding> SeriesDoubts::describe(std::string_view meter) const {
     }
   }
   std::ranges::move(unit_changes(meter, days), std::back_inserter(findings));
+  if (auto higher = higher_estimates(meter)) findings.push_back(std::move(*higher));
   return findings;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -23,10 +24,21 @@ class SeriesDoubts {
     TimeSpan span;
     double ratio;  ///< To the hours beside it.
   };
+  struct HigherEstimate {
+    Instant at;
+    double estimate_kW;
+    double measured_kW;  ///< The highest of the month.
+  };
   struct OneMonth {
     std::vector<double> days_kW;  ///< Means; NaN: less than half measured.
     std::vector<SummedHour> summed;
+    std::optional<HigherEstimate> higher_estimate;
   };
+  [[nodiscard]] static std::optional<SummedHour> summed_hour(const MonthSlots& month, int first,
+                                                             int per_hour);
+  void find_higher_estimate(const MonthSlots& month);
+  [[nodiscard]] std::optional<DataFinding> higher_estimates(std::string_view meter) const;
+
   std::map<Month, OneMonth> months_;
 };
 

@@ -58,19 +58,39 @@ TEST(SeriesDoubts, TwoHoursInOneAreTold) {
       MonthSlots whole = load(change.zone, change.month, std::chrono::minutes{minutes}, rng,
                               [](int) { return 1.0; });
       EXPECT_THAT(findings_of({whole}), IsEmpty());
-      MonthSlots once = whole;
+      const int hour = change.first * per_hour;
+      std::vector<int> starts;
+      std::vector<int> ends_by_begin;
       for (int k = 0; k < per_hour; ++k) {
-        const auto first = static_cast<std::size_t>(change.first * per_hour + k);
-        const auto second = first + static_cast<std::size_t>(per_hour);
-        once.measured_kW[second] = kBlank;
-        // One that is merely missing is a gap, and no news here.
-        if (k == 0) {
-          EXPECT_THAT(findings_of({once}), IsEmpty());
-        }
-        once.measured_kW[first] += whole.measured_kW[second];
+        starts.push_back(hour + k);
+        ends_by_begin.push_back(hour + k);
       }
-      EXPECT_THAT(findings_of({once}),
-                  ElementsAre(Field(&DataFinding::sentence, HasSubstr("both hours added up"))));
+      std::vector<int> ends_by_clock;
+      for (const int slot : starts) ends_by_clock.push_back(slot - 1);
+      ends_by_begin.back() += per_hour;
+      for (const auto& rows : {starts, ends_by_clock, ends_by_begin}) {
+        MonthSlots once = whole;
+        std::vector<double> both;
+        // What stands in a row is the sum of the two intervals that it was written for.
+        for (int k = 0; k < per_hour; ++k) {
+          const auto first =
+              static_cast<std::size_t>(rows == ends_by_clock ? hour + k - 1 : hour + k);
+          const auto second = first + static_cast<std::size_t>(per_hour);
+          both.push_back(whole.measured_kW[first] + whole.measured_kW[second]);
+          once.measured_kW[first] = once.measured_kW[second] = kBlank;
+        }
+        MonthSlots missing = once;
+        for (int k = 0; k < per_hour; ++k) {
+          once.measured_kW[static_cast<std::size_t>(rows[static_cast<std::size_t>(k)])] =
+              both[static_cast<std::size_t>(k)];
+          // One that is merely missing is a gap, and no news here.
+          missing.measured_kW[static_cast<std::size_t>(rows[static_cast<std::size_t>(k)])] =
+              0.5 * both[static_cast<std::size_t>(k)];
+        }
+        EXPECT_THAT(findings_of({missing}), IsEmpty());
+        EXPECT_THAT(findings_of({once}),
+                    ElementsAre(Field(&DataFinding::sentence, HasSubstr("both hours added up"))));
+      }
     }
   }
 }
@@ -100,6 +120,34 @@ TEST(SeriesDoubts, ABuildingIsNoUnit) {
                                   [&](int day) { return day >= since ? factor : 1.0; })}),
                 IsEmpty())
         << factor << " " << since;
+  }
+}
+
+// A peak that only an estimate has is none, and somebody must know; one beside it is no news.
+TEST(SeriesDoubts, APeakThatOnlyAnEstimateHasIsTold) {
+  Rng rng{7};
+  for (const double factor : {1.1, 0.9}) {
+    for (const Reason reason : {Reason::estimated, Reason::partial}) {
+      SCOPED_TRACE(factor);
+      std::vector<MonthSlots> months;
+      for (const unsigned number : {3u, 4u, 5u}) {
+        months.push_back(load("Europe/Berlin", month(2025, number), std::chrono::minutes{15}, rng,
+                              [](int) { return 1.0; }));
+        if (number == 4) continue;
+        const double highest_kW = std::ranges::max(months.back().measured_kW);
+        const auto slot = static_cast<std::size_t>(rng.uniform(0.0, 2900.0));
+        months.back().measured_kW[slot] = factor * highest_kW;
+        months.back().validity[slot] = Validity::scaled;
+        months.back().reasons[slot] = reason;
+      }
+      const auto found = findings_of(months);
+      if (factor > 1.0 && reason == Reason::estimated) {
+        EXPECT_THAT(found, ElementsAre(Field(&DataFinding::sentence,
+                                             HasSubstr("In 2 months a value that its quality"))));
+      } else {
+        EXPECT_THAT(found, IsEmpty());
+      }
+    }
   }
 }
 
