@@ -24,7 +24,8 @@ using std::chrono::seconds;
 
 constexpr std::uint64_t kHeaderRowsMax = 200;  // the header must be within these
 constexpr std::size_t kColumnsShown = 12;
-constexpr std::size_t kOrderRows = 64;  // these show whether the file runs from old to new
+constexpr std::size_t kOrderRows = 64;        // these show whether the file runs from old to new
+constexpr std::size_t kWaitingMax = 100'000;  // rows, for one that decides what a time means
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 /// "#3" is the third column: index 2.
@@ -113,6 +114,7 @@ class TableReader {
     }
     if (order_ == Order::unknown) find_order();
     hand_on_kept();
+    take_waiting(true);
     // A column may be in a block further down, but in one it must be.
     for (std::size_t i = 0; i < meters_.size(); ++i) {
       if (!is_placed_[i]) return no_column(header_, meters_[i].column);
@@ -216,6 +218,10 @@ class TableReader {
     const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
     clocks_.assign(clocks, ClockReader{calendar_});
     shown_.assign(clocks, {});
+    has_ends_ = shape_.clock_format == ClockFormat::time &&
+                std::ranges::any_of(meters_, [](const TableMeter& meter) {
+                  return meter.rows.stamps == csv::Stamps::end;
+                });
     return {};
   }
 
@@ -303,15 +309,70 @@ class TableReader {
   }
 
   void take_row(const TableRow& row) {
+    if (!has_ends_ || (waiting_.size() == 0 && !end_in_doubt(row))) return take_now(row);
+    waiting_.add(row);
+    take_waiting(false);
+  }
+
+  void take_now(const TableRow& row) {
     if (meter_ == kNone) return read_wide(row);
     read_long(row);
   }
 
+  struct EndInDoubt {
+    std::size_t clock;
+    ClockReader::EndAtChange end;
+  };
+
+  /// What a row's time may mean, if what its clock shows next must tell.
+  [[nodiscard]] std::optional<EndInDoubt> end_in_doubt(const TableRow& row) {
+    const auto clock = clock_index(row);
+    const auto shown = clock ? clock_of(row, true) : std::nullopt;
+    if (!shown) return {};
+    const auto end = clocks_[*clock].end_at_change(*shown);
+    return end ? std::optional{EndInDoubt{*clock, *end}} : std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<std::size_t> clock_index(const TableRow& row) {
+    return meter_ == kNone ? std::optional<std::size_t>{0} : meter_named(cell(row, meter_));
+  }
+
+  /// Takes the rows that wait, as far as those behind them decide what their times mean.
+  void take_waiting(bool is_whole) {
+    for (; waiting_at_ < waiting_.size(); ++waiting_at_) {
+      const auto doubt = end_in_doubt(waiting_.row(waiting_at_));
+      if (doubt) {
+        const auto next = shown_next(doubt->clock);
+        const bool is_too_long = waiting_.size() - waiting_at_ > kWaitingMax;
+        if (!next && !is_whole && !is_too_long) return;
+        if (next && doubt->end.is_followed_by(*next)) end_ = doubt;
+      }
+      take_now(waiting_.row(waiting_at_));
+      end_.reset();
+      looked_at_ = waiting_at_ + 2;
+    }
+    waiting_ = {};
+    waiting_at_ = 0;
+    looked_at_ = 1;
+  }
+
+  /// What a clock shows behind the first row that waits.
+  [[nodiscard]] std::optional<Instant> shown_next(std::size_t clock) {
+    for (; looked_at_ < waiting_.size(); ++looked_at_) {
+      const TableRow& row = waiting_.row(looked_at_);
+      if (clock_index(row) != clock) continue;
+      if (const auto shown = clock_of(row, true)) return shown;
+    }
+    return {};
+  }
+
   /// The row's time as its clock shows it, whatever its zone.
-  [[nodiscard]] std::optional<Instant> clock_of(const TableRow& row) const {
+  /// @param is_naive  Nothing of one that says its offset.
+  [[nodiscard]] std::optional<Instant> clock_of(const TableRow& row, bool is_naive = false) const {
     auto written = parse_stamp(cell(row, time_), shape_.time_format);
     if (!written) written = parse_stamp(utf8_of(cell(row, time_)), shape_.time_format);
     if (!written || (clock_ != kNone && !add_clock(row, *written).empty())) return {};
+    if (is_naive && written->utc_offset) return {};
     return written->clock;
   }
 
@@ -369,6 +430,7 @@ class TableReader {
     for (const std::string_view one : row.cells) header.push_back(utf8_of(one));
     if (header == header_) return;
     ++facts_.further_headers;
+    take_waiting(true);
     if (order_ != Order::old_to_new) {
       find_order();
       hand_on_kept();
@@ -424,6 +486,10 @@ class TableReader {
                     in_quotes(text) + " in " + calendar_.zone_name());
     }
     note_clock_put_back(clock, written->clock);
+    if (end_ && end_->clock == clock) {
+      clocks_[clock].pass(end_->end);
+      return end_->end.instant;
+    }
     const auto instant = clocks_[clock].instant_of(written->clock);
     if (clocks_[clock].hour() != ClockReader::Hour::usual) {
       count_change(row, clocks_[clock].hour(), written->clock);
@@ -640,6 +706,11 @@ class TableReader {
   std::size_t last_decimals_ = 0;
   Order order_ = Order::unknown;
   KeptRows kept_;
+  bool has_ends_ = false;  ///< Of a meter's intervals; else there is no doubt about them.
+  KeptRows waiting_;       ///< From one whose time is in doubt on.
+  std::size_t waiting_at_ = 0;
+  std::size_t looked_at_ = 1;      ///< The first that waits and was not looked at for its time.
+  std::optional<EndInDoubt> end_;  ///< That of the row being taken, once it is no doubt.
   ClockFacts facts_;
 };
 

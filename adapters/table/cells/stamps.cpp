@@ -144,17 +144,18 @@ std::optional<seconds> parse_time_of_day(std::string_view text) {
   return clock->time;
 }
 
+std::optional<Instant> ClockReader::with(Instant clock, seconds offset) const {
+  const Instant t = clock - offset;
+  return calendar_->utc_offset(t) == offset ? std::optional{t} : std::nullopt;
+}
+
 std::optional<Instant> ClockReader::instant_of(Instant clock) {
-  // No zone changes twice within two days, so the offsets a day before and a day after
-  // are the only ones.
-  const auto with = [&](seconds offset) -> std::optional<Instant> {
-    const Instant t = clock - offset;
-    return calendar_->utc_offset(t) == offset ? std::optional{t} : std::nullopt;
-  };
   const std::optional<Instant> last = last_clock_;
   last_clock_ = clock;
-  const auto before = with(calendar_->utc_offset(clock - days{1}));
-  const auto after = with(calendar_->utc_offset(clock + days{1}));
+  // No zone changes twice within two days, so the offsets a day before and a day after
+  // are the only ones.
+  const auto before = with(clock, calendar_->utc_offset(clock - days{1}));
+  const auto after = with(clock, calendar_->utc_offset(clock + days{1}));
   if (!before || !after || *before == *after) {
     in_second_pass_ = false;
     hour_ = before || after ? Hour::usual : Hour::skipped;
@@ -167,6 +168,26 @@ std::optional<Instant> ClockReader::instant_of(Instant clock) {
   const bool is_second = in_second_pass_ || (last && clock == *last);
   hour_ = is_second ? Hour::second : Hour::first;
   return is_second ? second : first;
+}
+
+std::optional<ClockReader::EndAtChange> ClockReader::end_at_change(Instant clock) const {
+  constexpr seconds kHalfHour{1800};  // no clock is changed at another time
+  if (clock.time_since_epoch() % kHalfHour != seconds{0}) return {};
+  const seconds before = calendar_->utc_offset(clock - days{1});
+  const seconds after = calendar_->utc_offset(clock + days{1});
+  if (before == after) return {};
+  const EndAtChange end{clock, clock - before, after - before};
+  const bool is_old = with(clock, before).has_value();
+  const bool is_new = with(clock, after).has_value();
+  if (!with(clock - seconds{1}, before) || is_old) return {};
+  if (end.jump.count() > 0) return is_new ? std::nullopt : std::optional{end};
+  return in_second_pass_ ? std::nullopt : std::optional{end};
+}
+
+void ClockReader::pass(const EndAtChange& end) {
+  last_clock_ = end.clock;
+  in_second_pass_ = end.jump.count() < 0;
+  hour_ = Hour::usual;
 }
 
 }  // namespace recald::table

@@ -83,7 +83,27 @@ class ClockReader {
   /// Of the last time that was converted.
   [[nodiscard]] Hour hour() const { return hour_; }
 
+  /// An interval's end where the clock changes may be written as the time of its begin plus its
+  /// length: 02:00 where the clock goes from there to 03:00; 03:00 before 02:15 where it goes back.
+  /// What the same clock shows next decides.
+  struct EndAtChange {
+    metering::Instant clock;
+    metering::Instant instant;  ///< If it is written so.
+    std::chrono::seconds jump;  ///< Forward; negative: back.
+
+    [[nodiscard]] bool is_followed_by(metering::Instant next) const {
+      return jump.count() > 0 ? next > clock + jump : next <= clock;
+    }
+  };
+  [[nodiscard]] std::optional<EndAtChange> end_at_change(metering::Instant clock) const;
+
+  /// Takes the time of `end` as the next.
+  void pass(const EndAtChange& end);
+
  private:
+  [[nodiscard]] std::optional<metering::Instant> with(metering::Instant clock,
+                                                      std::chrono::seconds offset) const;
+
   const metering::LocalCalendar* calendar_;
   std::optional<metering::Instant> last_clock_;
   bool in_second_pass_ = false;
