@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/text/utf8.hpp"
+
 namespace recald::http {
 namespace {
 
@@ -17,33 +19,6 @@ std::optional<int> hex_digit(char c) {
 }
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
-
-/// Length in bytes of the UTF-8 sequence that starts with `lead`; 0 if none does.
-std::size_t sequence_length(unsigned char lead) {
-  if (lead < 0x80) return 1;
-  if (lead >= 0xC2 && lead < 0xE0) return 2;
-  if (lead >= 0xE0 && lead < 0xF0) return 3;
-  if (lead >= 0xF0 && lead < 0xF5) return 4;
-  return 0;
-}
-
-/// UTF-8 as in Unicode: no overlong forms, no surrogates, nothing above U+10FFFF.
-bool is_utf8(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = sequence_length(byte(i));
-    if (length == 0 || length > text.size() - i) return false;
-    for (std::size_t k = 1; k < length; ++k) {
-      if ((byte(i + k) & 0xC0) != 0x80) return false;
-    }
-    if (byte(i) == 0xE0 && byte(i + 1) < 0xA0) return false;
-    if (byte(i) == 0xED && byte(i + 1) >= 0xA0) return false;
-    if (byte(i) == 0xF0 && byte(i + 1) < 0x90) return false;
-    if (byte(i) == 0xF4 && byte(i + 1) >= 0x90) return false;
-    i += length;
-  }
-  return true;
-}
 
 Result<std::string> decode(std::string_view text, bool plus_is_space) {
   std::string decoded;

@@ -7,6 +7,7 @@
 #include "adapters/table/cells/stamp_parts.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/read_table.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {
@@ -204,6 +205,11 @@ Result<ClockLabels> read_clock_labels(RowSource& rows, const TableShape& shape,
     }
     if (*time_at >= row.cells.size() || *clock_at >= row.cells.size()) continue;
     const auto stamp = parse_stamp(row.cells[*time_at], shape.time_format);
+    if (const auto time = parse_time_of_day(row.cells[*clock_at]);
+        time && shape.interval > seconds{0} && *time % shape.interval != seconds{0}) {
+      return ClockLabels{ClockFormat::time, "times such as " + csv::in_quotes(row.cells[*clock_at]) +
+                                                " are no whole intervals"};
+    }
     const auto label = label_of(row.cells[*clock_at], shape.interval);
     if (!stamp || !label) continue;
     const bool is_empty = std::all_of(values_at.begin(), values_at.end(), [&](std::size_t at) {

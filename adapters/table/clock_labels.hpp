@@ -70,6 +70,8 @@ class LabelledDays {
 
 /// Reads a table to its end for the labels of its clock column.
 /// @param values  Columns with values.
+/// @return the format; `time` too where times lie between the ends of intervals, as of a file whose
+///         intervals change
 /// @return malformed: nothing decides, or days contradict each other; the sentence says which, and
 ///         to give `clock_format`.
 [[nodiscard]] Result<ClockLabels> read_clock_labels(RowSource& rows, const TableShape& shape,

@@ -7,37 +7,10 @@
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/table/cells/words.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {
-
-void append_utf8(std::string& out, std::uint32_t point) {
-  const auto byte = [&](std::uint32_t bits) { out += static_cast<char>(bits); };
-  if (point < 0x80) {
-    byte(point);
-  } else if (point < 0x800) {
-    byte(0xC0 | (point >> 6));
-    byte(0x80 | (point & 0x3F));
-  } else if (point < 0x10000) {
-    byte(0xE0 | (point >> 12));
-    byte(0x80 | ((point >> 6) & 0x3F));
-    byte(0x80 | (point & 0x3F));
-  } else {
-    byte(0xF0 | (point >> 18));
-    byte(0x80 | ((point >> 12) & 0x3F));
-    byte(0x80 | ((point >> 6) & 0x3F));
-    byte(0x80 | (point & 0x3F));
-  }
-}
-
-/// Length in bytes of a UTF-8 character, from its first byte; 0 if none starts with it.
-std::size_t letter_bytes(unsigned char first) {
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first < 0xE0) return 2;
-  if (first >= 0xE0 && first < 0xF0) return 3;
-  if (first >= 0xF0 && first < 0xF5) return 4;
-  return 0;
-}
 
 /// Without blanks of any width and unseen marks at both ends.
 std::string_view without_wide_blanks(std::string_view cell) {
@@ -55,18 +28,6 @@ std::string_view without_wide_blanks(std::string_view cell) {
     if (!is_edge(take_character(last))) return cell;
     cell = cell.substr(0, begin - 1);
   }
-}
-
-bool is_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t count = letter_bytes(static_cast<unsigned char>(text[i]));
-    if (count == 0 || i + count > text.size()) return false;
-    for (std::size_t k = 1; k < count; ++k) {
-      if ((static_cast<unsigned char>(text[i + k]) & 0xC0u) != 0x80u) return false;
-    }
-    i += count;
-  }
-  return true;
 }
 
 /// Detects the encoding from the first bytes, then converts the whole text.
@@ -320,23 +281,6 @@ std::unique_ptr<RowSource> delimited_rows(csv::ByteSource bytes, char separator,
 csv::ByteSource as_utf8(csv::ByteSource bytes) {
   const auto recoder = std::make_shared<Recoder>(std::move(bytes));
   return [recoder](char* buffer, std::size_t size) { return recoder->read(buffer, size); };
-}
-
-std::string utf8_of(std::string_view text) {
-  if (is_utf8(text)) return std::string{text};
-  // Windows has other signs where Latin-1 has none: dashes, quotes, the euro.
-  constexpr std::array<std::uint16_t, 32> kWindows{
-      0x20AC, 0x81,   0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
-      0x2039, 0x0152, 0x8D,   0x017D, 0x8F,   0x90,   0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
-      0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0x9D,   0x017E, 0x0178};
-  constexpr unsigned char kFirst = 0x80;
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool is_windows = byte >= kFirst && byte < kFirst + kWindows.size();
-    append_utf8(out, is_windows ? kWindows[byte - kFirst] : byte);
-  }
-  return out;
 }
 
 }  // namespace recald::table

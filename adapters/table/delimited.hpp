@@ -37,7 +37,4 @@ inline constexpr RowLimits kWideRows{.line_bytes = 2u << 20, .cells = 40'000};
 /// kinds; other text passes unchanged.
 [[nodiscard]] csv::ByteSource as_utf8(csv::ByteSource bytes);
 
-/// Treats text that is not UTF-8 as Latin-1, in which older programs write "m³" and "°C".
-[[nodiscard]] std::string utf8_of(std::string_view text);
-
 }  // namespace recald::table

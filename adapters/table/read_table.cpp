@@ -15,6 +15,7 @@
 #include "adapters/table/header_rows.hpp"
 #include "core/absent.hpp"
 #include "core/text/nearest.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {
@@ -218,10 +219,6 @@ class TableReader {
     const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
     clocks_.assign(clocks, ClockReader{calendar_});
     shown_.assign(clocks, {});
-    has_ends_ = shape_.clock_format == ClockFormat::time &&
-                std::ranges::any_of(meters_, [](const TableMeter& meter) {
-                  return meter.rows.stamps == csv::Stamps::end;
-                });
     return {};
   }
 
@@ -309,7 +306,7 @@ class TableReader {
   }
 
   void take_row(const TableRow& row) {
-    if (!has_ends_ || (waiting_.size() == 0 && !end_in_doubt(row))) return take_now(row);
+    if (waiting_.size() == 0 && (is_quiet() || !end_in_doubt(row))) return take_now(row);
     waiting_.add(row);
     take_waiting(false);
   }
@@ -317,6 +314,17 @@ class TableReader {
   void take_now(const TableRow& row) {
     if (meter_ == kNone) return read_wide(row);
     read_long(row);
+  }
+
+  /// Whether no clock is changed within a day of the last row's time.
+  [[nodiscard]] bool is_quiet() {
+    constexpr std::chrono::days kNear{1};
+    constexpr std::chrono::days kFar{3};
+    if (shape_.clock_format != ClockFormat::time || quiet_.contains(last_)) return true;
+    if (last_ == Instant{}) return false;
+    if (calendar_.utc_offset(last_ - kFar) != calendar_.utc_offset(last_ + kFar)) return false;
+    quiet_ = {last_ - kFar + kNear, last_ + kFar - kNear};
+    return true;
   }
 
   struct EndInDoubt {
@@ -370,7 +378,6 @@ class TableReader {
   /// @param is_naive  Nothing of one that says its offset.
   [[nodiscard]] std::optional<Instant> clock_of(const TableRow& row, bool is_naive = false) const {
     auto written = parse_stamp(cell(row, time_), shape_.time_format);
-    if (!written) written = parse_stamp(utf8_of(cell(row, time_)), shape_.time_format);
     if (!written || (clock_ != kNone && !add_clock(row, *written).empty())) return {};
     if (is_naive && written->utc_offset) return {};
     return written->clock;
@@ -444,7 +451,7 @@ class TableReader {
   /// Whether a row has no time, and no number in any meter's column. Without a header, what stands
   /// above the first time is one, whatever it has.
   [[nodiscard]] bool is_more_header(const TableRow& row) const {
-    if (is_stamp(utf8_of(cell(row, time_)), shape_.time_format)) return false;
+    if (is_stamp(cell(row, time_), shape_.time_format)) return false;
     return header_.empty() || std::none_of(value_.begin(), value_.end(), [&](std::size_t column) {
              return parse_cell(cell(row, column), shape_.decimal).has_value();
            });
@@ -465,7 +472,6 @@ class TableReader {
     };
     const std::string_view text = cell(row, time_);
     auto written = parse_stamp(text, shape_.time_format);
-    if (!written) written = parse_stamp(utf8_of(text), shape_.time_format);  // dashes of Windows
     if (!written) return refuse(written.error().message);
     counted_date_ = written->clock;
     if (clock_ != kNone) {
@@ -473,6 +479,7 @@ class TableReader {
     }
     if (written->utc_offset) {
       const Instant instant = written->clock - *written->utc_offset;
+      last_ = instant;
       if (!written->is_zone_named || fits_zone(instant, *written->utc_offset)) return instant;
       return refuse("timestamp " + in_quotes(text) + ": the letters of its zone stand for " +
                     offset_text(*written->utc_offset) + ", far from " + calendar_.zone_name() +
@@ -494,6 +501,7 @@ class TableReader {
     if (clocks_[clock].hour() != ClockReader::Hour::usual) {
       count_change(row, clocks_[clock].hour(), written->clock);
     }
+    last_ = instant.value_or(last_);
     if (instant) return instant;
     ++facts_.skipped;
     return refuse("timestamp " + in_quotes(text) + " does not exist in " + calendar_.zone_name() +
@@ -706,7 +714,8 @@ class TableReader {
   std::size_t last_decimals_ = 0;
   Order order_ = Order::unknown;
   KeptRows kept_;
-  bool has_ends_ = false;  ///< Of a meter's intervals; else there is no doubt about them.
+  Instant last_{};              ///< Of the last row.
+  metering::TimeSpan quiet_{};  ///< Where no clock is changed.
   KeptRows waiting_;       ///< From one whose time is in doubt on.
   std::size_t waiting_at_ = 0;
   std::size_t looked_at_ = 1;      ///< The first that waits and was not looked at for its time.

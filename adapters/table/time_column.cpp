@@ -70,6 +70,11 @@ std::optional<TimeColumn> find_dated(std::span<const KeptRow* const> rows, std::
       different.insert(cell);
     }
     if (2 * count < rows.size() - *first) continue;
+    // Of seconds since 1970 some, such as 1604197800, read as dates.
+    const auto counted = std::ranges::count_if(rows.first(*first), [&](const KeptRow* row) {
+      return parse_cell(cell_of(*row, column), '.').has_value();
+    });
+    if (static_cast<std::size_t>(counted) > count) continue;
     candidates.push_back(
         {column, *first, different.size(), rank_of(text_above(rows, *first, column))});
   }
@@ -109,10 +114,10 @@ Counts counts_of(std::span<const KeptRow* const> rows, std::size_t column) {
 }
 
 /// The step that most neighbours have; 0: none.
-double commonest_step_of(const std::vector<double>& sorted) {
+double commonest_step_of(const std::vector<double>& values) {
   std::vector<double> steps;
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    if (sorted[i] > sorted[i - 1]) steps.push_back(sorted[i] - sorted[i - 1]);
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] > values[i - 1]) steps.push_back(values[i] - values[i - 1]);
   }
   std::sort(steps.begin(), steps.end());
   double step = 0.0;
@@ -129,20 +134,39 @@ double commonest_step_of(const std::vector<double>& sorted) {
   return 2 * most >= steps.size() ? step : 0.0;
 }
 
-/// Days of a spreadsheet, or seconds since 1970 or parts of them: numbers that always rise or
-/// always fall, mostly by the same step.
+/// Whether the values rise, or fall, but for a few turns back: a table of one meter after another
+/// begins again with each. Falling ones are turned round.
+bool make_rising(std::vector<double>& values) {
+  constexpr std::size_t kRowsATurn = 20;
+  std::size_t rises = 0;
+  std::size_t falls = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] > values[i - 1]) ++rises;
+    if (values[i] < values[i - 1]) ++falls;
+  }
+  if (falls > rises) {
+    std::reverse(values.begin(), values.end());
+    std::swap(falls, rises);
+  }
+  return falls * kRowsATurn <= rises;
+}
+
+/// Days of a spreadsheet, or seconds since 1970 or parts of them: numbers that rise or fall, mostly
+/// by the same step.
 std::optional<TimeColumn> find_counted(std::span<const KeptRow* const> rows, std::size_t column) {
   Counts counts = counts_of(rows, column);
   std::vector<double>& values = counts.values;
   if (values.size() < 3 || values.size() + counts.first_row < rows.size() * 9 / 10) return {};
-  if (values.front() > values.back()) std::reverse(values.begin(), values.end());
-  if (!std::is_sorted(values.begin(), values.end())) return {};
+  if (!make_rising(values)) return {};
   constexpr double kLatest_s =
       static_cast<double>(metering::kLatestInstant.time_since_epoch().count());
   constexpr double kLatestDay = 25'569.0 + kLatest_s / 86'400.0;  // since the end of 1899
-  const double begin = values.front();
-  const double end = values.back();
-  const double step = (end - begin) / static_cast<double>(values.size() - 1);
+  const auto [least, most] = std::ranges::minmax_element(values);
+  const double begin = *least;
+  const double end = *most;
+  const double step = std::ranges::is_sorted(values)
+                          ? (end - begin) / static_cast<double>(values.size() - 1)
+                          : commonest_step_of(values);
   if (begin > 32'000.0 && end < kLatestDay && step > 0.0 && step < 1.01) {
     return TimeColumn{column, counts.first_row, true, TimeFormat::excel};
   }

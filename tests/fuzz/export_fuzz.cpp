@@ -6,6 +6,7 @@
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/read_table.hpp"
 #include "adapters/table/sniff.hpp"
+#include "core/text/utf8.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace recald::fuzz {
@@ -17,7 +18,7 @@ std::vector<table::KeptRow> rows_of(std::string_view text, char separator) {
   for (table::TableRow row; kept.size() < 200 && rows->next(row);) {
     kept.push_back({row.number, {}});
     for (const std::string_view cell : row.cells) {
-      kept.back().cells.push_back(table::utf8_of(cell));
+      kept.back().cells.push_back(utf8_of(cell));
     }
   }
   return kept;

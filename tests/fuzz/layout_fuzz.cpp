@@ -14,6 +14,7 @@
 #include "adapters/table/loads/meter_parts.hpp"
 #include "adapters/table/loads/rows_apart.hpp"
 #include "adapters/table/read_table.hpp"
+#include "core/text/utf8.hpp"
 #include "tests/fuzz/require.hpp"
 
 namespace recald::fuzz {
@@ -57,7 +58,7 @@ void require_layouts(const std::function<Rows()>& open, const metering::LocalCal
   for (table::TableRow row; head.size() < 200 && first->next(row);) {
     head.push_back({row.number, {}});
     for (const std::string_view cell : row.cells) {
-      head.back().cells.push_back(table::utf8_of(cell));
+      head.back().cells.push_back(utf8_of(cell));
     }
   }
   if (const auto layout = table::guess_layout(head)) {

@@ -7,6 +7,7 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/table/cells/loose_stamp.hpp"
 #include "adapters/table/cells/stamp_parts.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {
@@ -110,6 +111,7 @@ std::optional<WrittenTime> parse_plainly(std::string_view text, TimeFormat forma
 Result<WrittenTime> parse_stamp(std::string_view text, TimeFormat format) {
   if (format == TimeFormat::excel || format == TimeFormat::unix) return parse_count(text, format);
   if (const auto plain = parse_plainly(text, format)) return in_range(*plain, text);
+  if (!is_utf8(text)) return parse_stamp(utf8_of(text), format);  // dashes of Windows
   LooseStamp loose = parse_loosely(text, format);
   if (loose.time) return in_range(*loose.time, text);
   Error error = no_stamp(text, format);
@@ -127,6 +129,7 @@ bool is_stamp(std::string_view text, TimeFormat format) {
     return parse_count(text, format).has_value();
   }
   auto time = parse_plainly(text, format);
+  if (!time && !is_utf8(text)) return is_stamp(utf8_of(text), format);
   if (!time) time = parse_loosely(text, format).time;
   return time && in_range(*time, text).has_value();
 }
@@ -135,7 +138,7 @@ std::optional<WrittenClock> parse_clock(std::string_view text) {
   Scanner scan{text};
   const auto time = take_time(scan);
   if (time && scan.is_done()) return WrittenClock{*time, {}};
-  return parse_clock_loosely(text);
+  return is_utf8(text) ? parse_clock_loosely(text) : parse_clock_loosely(utf8_of(text));
 }
 
 std::optional<seconds> parse_time_of_day(std::string_view text) {
@@ -157,8 +160,10 @@ std::optional<Instant> ClockReader::instant_of(Instant clock) {
   const auto before = with(clock, calendar_->utc_offset(clock - days{1}));
   const auto after = with(clock, calendar_->utc_offset(clock + days{1}));
   if (!before || !after || *before == *after) {
+    const auto beside = beside_change(clock, last);
+    hour_ = before || after || beside ? Hour::usual : Hour::skipped;
+    if (beside) return beside;
     in_second_pass_ = false;
-    hour_ = before || after ? Hour::usual : Hour::skipped;
     return before ? before : after;
   }
   const Instant first = std::min(*before, *after);
@@ -168,6 +173,24 @@ std::optional<Instant> ClockReader::instant_of(Instant clock) {
   const bool is_second = in_second_pass_ || (last && clock == *last);
   hour_ = is_second ? Hour::second : Hour::first;
   return is_second ? second : first;
+}
+
+std::optional<Instant> ClockReader::beside_change(Instant clock, std::optional<Instant> last) {
+  constexpr seconds kGrid{300};
+  constexpr seconds kBeside{60};
+  const Instant grid = metering::interval_start(clock + kBeside, kGrid);
+  if (grid == clock || clock > grid + kBeside) return {};
+  const auto before = with(grid, calendar_->utc_offset(grid - days{1}));
+  const auto after = with(grid, calendar_->utc_offset(grid + days{1}));
+  const auto shifted = [&](Instant t) { return t - (grid - clock); };
+  const bool is_skipped = !with(clock, calendar_->utc_offset(clock - days{1})) &&
+                          !with(clock, calendar_->utc_offset(clock + days{1}));
+  if (is_skipped)
+    return before || after ? std::optional{shifted(before ? *before : *after)} : std::nullopt;
+  const bool is_back = last && clock <= *last;
+  if (!is_back || !before || !after || *before == *after) return {};
+  in_second_pass_ = true;
+  return shifted(std::max(*before, *after));
 }
 
 std::optional<ClockReader::EndAtChange> ClockReader::end_at_change(Instant clock) const {

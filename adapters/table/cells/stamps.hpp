@@ -104,6 +104,11 @@ class ClockReader {
   [[nodiscard]] std::optional<metering::Instant> with(metering::Instant clock,
                                                       std::chrono::seconds offset) const;
 
+  /// Of a time some seconds beside the full minutes at which a clock is changed: 01:59:59, which is
+  /// skipped, for 02:00, or comes again as 01:00 does. @return nothing: it is none
+  [[nodiscard]] std::optional<metering::Instant> beside_change(
+      metering::Instant clock, std::optional<metering::Instant> last);
+
   const metering::LocalCalendar* calendar_;
   std::optional<metering::Instant> last_clock_;
   bool in_second_pass_ = false;

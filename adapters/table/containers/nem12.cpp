@@ -14,6 +14,7 @@
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/sniff.hpp"
 #include "core/metering/civil_time.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {

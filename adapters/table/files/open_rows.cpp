@@ -11,6 +11,7 @@
 #include "adapters/table/green_button.hpp"
 #include "adapters/table/layouts/layout_rows.hpp"
 #include "adapters/table/xlsx.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {

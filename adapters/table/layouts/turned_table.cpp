@@ -9,6 +9,7 @@
 #include "adapters/table/layouts/kept_table.hpp"
 #include "adapters/table/layouts/time_columns.hpp"
 #include "adapters/table/read_table.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {

@@ -6,6 +6,7 @@
 #include "adapters/table/cells/stamps.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/read_table.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {

@@ -11,6 +11,7 @@
 #include "adapters/table/read_table.hpp"
 #include "adapters/table/sniff.hpp"
 #include "core/text/ascii.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::table {
 namespace {

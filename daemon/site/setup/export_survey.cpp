@@ -24,6 +24,7 @@
 #include "adapters/table/loads/named_rows.hpp"
 #include "adapters/table/loads/rows_apart.hpp"
 #include "core/text/ascii.hpp"
+#include "core/text/utf8.hpp"
 #include "daemon/site/replay/clock_doubts.hpp"
 #include "daemon/site/setup/clock_evidence.hpp"
 #include "daemon/site/setup/file_guess.hpp"
@@ -137,7 +138,7 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
   for (table::TableRow row; rows->next(row);) {
     if (!meter_at || !time_at) {
       header.clear();
-      for (const std::string_view cell : row.cells) header.push_back(table::utf8_of(cell));
+      for (const std::string_view cell : row.cells) header.push_back(utf8_of(cell));
       meter_at = table::find_column(header, shape.meter_column);
       time_at = table::find_column(header, shape.time_column);
       unit_at = table::find_column(header, shape.unit_column);
@@ -153,13 +154,13 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
                                  "name the meters, take it out",
                                  csv::in_quotes(shape.meter_column), kMetersMax));
     }
-    const std::string text = table::utf8_of(name);
+    const std::string text = utf8_of(name);
     known.emplace(std::string{name}, meters.size());
     const bool has_unit = unit_at && *unit_at < row.cells.size();
     for (const table::GuessedColumn& value : values) {
       const std::string called = values.size() == 1 ? text : text + " " + value.name;
       if (has_unit) {
-        meters.push_back(described(called, text, value.column, table::utf8_of(row.cells[*unit_at]),
+        meters.push_back(described(called, text, value.column, utf8_of(row.cells[*unit_at]),
                                    "as its rows say"));
         continue;
       }
@@ -945,11 +946,15 @@ Result<void> find_clock_format(SurveyedExport& survey, const metering::LocalCale
                                                    told.value_or(guess.shape.clock_format)));
   const bool was_clock = guess.shape.clock_format == table::ClockFormat::time;
   guess.shape.clock_format = *labels.format;
+  // Where times end at 24:00, the clock hour that ends is what the clock shows.
+  if (was_clock && guess.shape.clock_format == table::ClockFormat::hour_ending) {
+    guess.shape.clock_format = table::ClockFormat::time;
+  }
   survey.clock_format_because = labels.because;
-  if (*labels.format == table::ClockFormat::time) {
+  if (guess.shape.clock_format == table::ClockFormat::time) {
     guess.shape.interval = seconds{0};
-    if (!was_clock) guess.stamps = csv::Stamps::end;
-    if (!was_clock) guess.stamps_because = labels.because;
+    guess.stamps = csv::Stamps::end;
+    guess.stamps_because = was_clock ? "its days end at 24:00" : labels.because;
   } else {
     guess.stamps = csv::Stamps::start;
     guess.stamps_because = "a number stands for its whole interval";
@@ -1128,11 +1133,35 @@ bool is_without_zone(const SurveyedExport& survey) {
   return survey.table && !survey.table->has_offsets && survey.table->shape.timezone.empty();
 }
 
+/// Rows further down may show a decimal sign that the first ones, whole numbers, leave open.
+Result<void> try_other_decimal(SurveyedExport& survey, const metering::LocalCalendar& calendar,
+                               WholeFile& whole) {
+  if (!survey.table || survey.table->decimal_because.starts_with("as ")) return {};
+  const auto& listed = whole.report.issues.listed;
+  const auto shown = std::ranges::find_if(listed, [](const csv::LineIssue& issue) {
+    return issue.reason.find("is no number with a decimal") != std::string::npos;
+  });
+  if (shown == listed.end()) return {};
+  char& decimal = survey.table->shape.decimal;
+  const char guessed = decimal;
+  decimal = guessed == '.' ? ',' : '.';
+  WholeFile other = TRY(read_whole(survey, calendar));
+  if (other.report.issues.total < whole.report.issues.total) {
+    survey.table->decimal_because = fmt::format("as in row {}", shown->line);
+    whole = std::move(other);
+    return {};
+  }
+  decimal = guessed;
+  whole = TRY(read_whole(survey, calendar));
+  return {};
+}
+
 /// Reads it the way that its rows show: rows told apart, flags, registers, steps, its clock.
 Result<WholeFile> read_as_it_shows(SurveyedExport& survey, const metering::LocalCalendar& calendar,
                                    const SurveyHints& hints) {
   TRY(find_clock_format(survey, calendar, hints.clock_format));
   auto whole = TRY(read_whole(survey, calendar));
+  TRY(try_other_decimal(survey, calendar, whole));
   if (survey.table) TRY(tell_rows_apart(survey, calendar, whole));
   const bool has_flags = learn_flags(survey, whole);
   const bool has_registers = take_registers_of_others(survey, hints);

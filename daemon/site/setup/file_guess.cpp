@@ -19,6 +19,7 @@
 #include "adapters/table/layouts/guess_layout.hpp"
 #include "adapters/table/layouts/layout_rows.hpp"
 #include "adapters/table/xlsx.hpp"
+#include "core/text/utf8.hpp"
 
 namespace recald::daemon {
 namespace {
@@ -39,7 +40,7 @@ std::vector<table::KeptRow> kept_head(table::RowSource& rows) {
        kept.size() < table::kSniffedRows && cells < kHeadCellsMax && rows.next(row);) {
     kept.push_back({row.number, {}});
     for (const std::string_view cell : row.cells) {
-      kept.back().cells.push_back(table::utf8_of(cell));
+      kept.back().cells.push_back(utf8_of(cell));
     }
     cells += row.cells.size();
   }
@@ -152,7 +153,7 @@ std::optional<seconds> usual_step(const std::filesystem::path& file,
   for (table::TableRow row; seen < table::kSniffedRows && (*rows)->next(row); ++seen) {
     if (!time) {
       std::vector<std::string> header;
-      for (const std::string_view cell : row.cells) header.push_back(table::utf8_of(cell));
+      for (const std::string_view cell : row.cells) header.push_back(utf8_of(cell));
       time = table::find_column(header, shape.time_column);
       clock = table::find_column(header, shape.clock_column);
       meter = table::find_column(header, shape.meter_column);
@@ -239,7 +240,7 @@ Result<FileGuess> guess_workbook(const std::filesystem::path& file,
 
 std::vector<std::string> cells_as_texts(const table::TableRow& row) {
   std::vector<std::string> texts;
-  for (const std::string_view cell : row.cells) texts.push_back(table::utf8_of(cell));
+  for (const std::string_view cell : row.cells) texts.push_back(utf8_of(cell));
   return texts;
 }
 

@@ -86,10 +86,19 @@ void join(SurveyedMeter& meter, const SurveyedMeter& more) {
   mean(meter.zero_share, more.zero_share);
   mean(meter.frozen_share, more.frozen_share);
   mean(meter.negative_share, more.negative_share);
+  const auto hours = [](const SurveyedMeter& one) {
+    return static_cast<double>(one.values) * metering::in_hours(one.interval);
+  };
+  const double hours_before = hours(meter);
+  const double hours_added = hours(more);
+  meter.mean_kW = (hours_before * meter.mean_kW + hours_added * more.mean_kW) /
+                  std::max(hours_before + hours_added, 1e-9);
   if (is_guessed(meter.stamps)) meter.stamps = more.stamps;
   meter.as_register.rated_kW = std::max(meter.as_register.rated_kW, more.as_register.rated_kW);
   if (meter.interval != more.interval) meter.is_of_other_steps = true;
   meter.interval = std::max(meter.interval, more.interval);
+  meter.values = static_cast<std::uint64_t>((hours_before + hours_added) /
+                                            metering::in_hours(meter.interval));
   meter.grid_tolerance = std::max(meter.grid_tolerance, more.grid_tolerance);
   meter.readings += more.readings;
   meter.refused += more.refused;

@@ -299,5 +299,29 @@ TEST(Stamps, TheHourThatIsLeftOutHasNoInstant) {
   EXPECT_EQ(to_string(*reader.instant_of(shown("2024-03-31 03:00"))), "2024-03-31T01:00:00Z");
 }
 
+// Devices that stamp some seconds beside the full minute show the jump beside it, too.
+TEST(Stamps, SecondsBesideAClockChangeBelongToTheMinute) {
+  for (const char* zone : {"Europe/Berlin", "Europe/Lisbon", "America/Chicago"}) {
+    const auto calendar = LocalCalendar::open(zone);
+    for (const int step_min : {15, 60}) {
+      for (const int beside_s : {-1, -3, 2, 0}) {
+        SCOPED_TRACE(std::string{zone} + " every " + std::to_string(step_min) + " min, beside " +
+                     std::to_string(beside_s));
+        for (const auto& first : {shown("2024-03-30 12:00"), shown("2024-10-26 12:00"),
+                                  shown("2024-03-09 12:00"), shown("2024-11-02 12:00")}) {
+          ClockReader reader{*calendar};
+          for (Instant t = first; t < first + std::chrono::hours{36};
+               t += std::chrono::minutes{step_min}) {
+            const std::chrono::seconds beside{beside_s};
+            const auto read = reader.instant_of(t + calendar->utc_offset(t) + beside);
+            ASSERT_TRUE(read.has_value()) << to_string(t);
+            EXPECT_EQ(to_string(*read), to_string(t + beside));
+          }
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace recald::table::stamps_test
