@@ -91,6 +91,8 @@ std::vector<DataFinding> unit_changes(std::string_view meter, const std::vector<
       before.push_back(days[i - k].kW);
       since.push_back(days[i + k - 1].kW);
     }
+    // What feeds in on some days and draws on others has a mean of any size.
+    if (std::ranges::min(since) <= 0.0 || std::ranges::min(before) <= 0.0) continue;
     const double ratio = median(since) / median(before);
     if (!(ratio > 0.0) || std::isinf(ratio)) continue;
     const UnitFactor* factor = unit_factor(ratio);

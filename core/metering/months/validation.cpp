@@ -90,8 +90,10 @@ void check_range(MonthSlots& month, double lower_kW, double limit_kW, Reason bel
 /// Believes readings above a limit that nobody gave, if others show that the load draws so much.
 class LargeLoads {
  public:
-  LargeLoads(const MonthSlots& month, const ValidationContext& context, double limit_kW)
-      : month_{month}, limit_kW_{limit_kW} {
+  /// @param sign  1; −1 of a meter both ways: what it feeds in.
+  LargeLoads(const MonthSlots& month, const ValidationContext& context, double limit_kW,
+             double sign)
+      : month_{month}, limit_kW_{limit_kW}, sign_{sign} {
     for (const MonthSlots* one : {context.before, &month, context.after}) {
       if (one != nullptr) gather(*one);
     }
@@ -99,7 +101,7 @@ class LargeLoads {
 
   /// @pre the slot's reading lies above the limit
   [[nodiscard]] bool believes(std::size_t slot) const {
-    const Large own = large_of(month_, slot, limit_kW_);
+    const Large own = large_of(month_, slot);
     if (is_slip(own)) return false;
     return std::any_of(large_.begin(), large_.end(), [&](const Large& other) {
       const bool is_another_day = other.month != own.month || other.day != own.day;
@@ -117,12 +119,15 @@ class LargeLoads {
     bool is_single;  ///< Neither neighbour lies above the limit.
   };
 
-  static Large large_of(const MonthSlots& month, std::size_t slot, double limit_kW) {
-    const auto is_above = [&](std::size_t i) {
-      return i < month.measured_kW.size() && month.measured_kW[i] > limit_kW;
-    };
-    const bool is_single = !is_above(slot + 1) && (slot == 0 || !is_above(slot - 1));
-    return {&month, month.grid->day(static_cast<int>(slot)), month.measured_kW[slot], is_single};
+  [[nodiscard]] bool is_above(const MonthSlots& month, std::size_t slot) const {
+    return slot < month.measured_kW.size() && sign_ * month.measured_kW[slot] > limit_kW_;
+  }
+
+  [[nodiscard]] Large large_of(const MonthSlots& month, std::size_t slot) const {
+    const bool is_single =
+        !is_above(month, slot + 1) && (slot == 0 || !is_above(month, slot - 1));
+    return {&month, month.grid->day(static_cast<int>(slot)), sign_ * month.measured_kW[slot],
+            is_single};
   }
 
   void gather(const MonthSlots& month) {
@@ -134,9 +139,9 @@ class LargeLoads {
         const auto i = static_cast<std::size_t>(slot);
         if (month.validity[i] != Validity::ok || month.measured_kW[i] == 0.0) continue;
         ++reported;
-        if (!(month.measured_kW[i] > limit_kW_)) continue;
+        if (!is_above(month, i)) continue;
         ++above;
-        large_.push_back(large_of(month, i, limit_kW_));
+        large_.push_back(large_of(month, i));
       }
       if (above > 0 && above > kSlipOfDay * reported)
         slips_.emplace_back(&month, static_cast<int>(day));
@@ -149,19 +154,22 @@ class LargeLoads {
 
   const MonthSlots& month_;
   double limit_kW_;
+  double sign_;
   std::vector<Large> large_;
   std::vector<std::pair<const MonthSlots*, int>> slips_;
 };
 
-/// @return the largest reading that is believed above the limit; 0: none is.
-double check_unrated(MonthSlots& month, const ValidationContext& context, double limit_kW) {
-  const LargeLoads loads{month, context, limit_kW};
+/// @return the largest reading times `sign` that is believed above the limit; 0: none is.
+double check_unrated(MonthSlots& month, const ValidationContext& context, double limit_kW,
+                     double sign) {
+  const LargeLoads loads{month, context, limit_kW, sign};
   double largest_kW = 0.0;
   std::vector<std::size_t> refused;
   for (std::size_t i = 0; i < month.measured_kW.size(); ++i) {
-    if (month.validity[i] != Validity::ok || !(month.measured_kW[i] > limit_kW)) continue;
+    const double value_kW = sign * month.measured_kW[i];
+    if (month.validity[i] != Validity::ok || !(value_kW > limit_kW)) continue;
     if (loads.believes(i)) {
-      largest_kW = std::max(largest_kW, month.measured_kW[i]);
+      largest_kW = std::max(largest_kW, value_kW);
     } else {
       refused.push_back(i);
     }
@@ -516,10 +524,13 @@ void validate(MonthSlots& month, const Meter& meter, const ValidationContext& co
   const bool both_ways = meter.negative_is_valid;
   const Extremes extremes = extremes_of(month);
   const double limit_kW = range_limit_kW(month, extremes.magnitude_kW(), meter, context, options);
-  const double lower_kW = both_ways ? -limit_kW : 0.0;
+  double lower_kW = both_ways ? -limit_kW : 0.0;
   double largest_kW = limit_kW;
   if (!meter.rated_kW && extremes.highest_kW > limit_kW) {
-    largest_kW = std::max(limit_kW, check_unrated(month, context, limit_kW));
+    largest_kW = std::max(limit_kW, check_unrated(month, context, limit_kW, 1.0));
+  }
+  if (!meter.rated_kW && both_ways && extremes.lowest_kW < lower_kW) {
+    lower_kW = -std::max(limit_kW, check_unrated(month, context, limit_kW, -1.0));
   }
   if (extremes.highest_kW > largest_kW || extremes.lowest_kW < lower_kW) {
     check_range(month, lower_kW, largest_kW, both_ways ? Reason::range : Reason::negative);

@@ -123,6 +123,19 @@ TEST(SeriesDoubts, ABuildingIsNoUnit) {
   }
 }
 
+// A meter both ways draws and feeds in: the mean of its days may be of any size and sign.
+TEST(SeriesDoubts, WhatTheSunLeavesIsNoUnit) {
+  Rng rng{8};
+  for (int draw = 0; draw < 300; ++draw) {
+    const int since = static_cast<int>(rng.below(30));
+    const double left = std::exp(rng.uniform(-4.0, 0.0));
+    EXPECT_THAT(findings_of({load("America/Los_Angeles", month(2025, 5), std::chrono::minutes{60},
+                                  rng, [&](int day) { return day >= since ? -left : -1.0; })}),
+                IsEmpty())
+        << left << " " << since;
+  }
+}
+
 // A peak that only an estimate has is none, and somebody must know; one beside it is no news.
 TEST(SeriesDoubts, APeakThatOnlyAnEstimateHasIsTold) {
   Rng rng{7};

@@ -241,6 +241,22 @@ TEST(Validation, ALargeLoadIsBelievedOnceItRepeats) {
   }
 }
 
+// What a roof feeds in at noon beside what a house draws: of a meter both ways it is a load, too.
+TEST(Validation, ALargeFeedInIsBelievedOnceItRepeats) {
+  Meter meter = hourly_meter();
+  meter.negative_is_valid = true;
+  for (const int days : {1, 3, 30}) {
+    SCOPED_TRACE(days);
+    MonthSlots slots = hourly([&](int slot) {
+      const int hour = slot % 24;
+      const bool is_sunny = slot / 24 < days && hour > 9 && hour < 15;
+      return is_sunny ? -8.0 - 0.3 * hour - 0.01 * (slot / 24) : 0.06 + 0.001 * hour;
+    });
+    validate(slots, meter, {}, {});
+    EXPECT_EQ(suspects(slots), days == 1 ? 5 : 0);
+  }
+}
+
 // … also on the day before the month began.
 TEST(Validation, ALargeLoadRepeatsAcrossMonths) {
   const auto charged_on = [](int day) {
