@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "adapters/csv/fields.hpp"
+#include "core/metering/registers/late_stamps.hpp"
 #include "core/metering/registers/rest.hpp"
 
 namespace recald::csv {
@@ -37,18 +38,6 @@ std::vector<Instant> stamps_of(const Rows& rows, std::size_t count, Stamp stamp)
   std::vector<Instant> stamps;
   for (std::size_t i = 0; i < std::min(count, rows.size()); ++i) stamps.push_back(stamp(rows[i]));
   return stamps;
-}
-
-/// Samples a little late or early come at the ends of intervals.
-void put_on_grid(std::vector<metering::RegisterSample>& samples, seconds interval) {
-  constexpr seconds kBesideMax{120};
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const seconds late = samples[i].time.time_since_epoch() % interval;
-    const seconds beside = 2 * late > interval ? late - interval : late;
-    if (std::chrono::abs(beside) > std::min(kBesideMax, interval / kToleranceShare)) continue;
-    const Instant time = samples[i].time - beside;
-    if (i == 0 || time > samples[i - 1].time) samples[i].time = time;
-  }
 }
 
 seconds longest_step(const std::vector<RowStep>& steps) {
@@ -623,8 +612,12 @@ void ReadingIntake::finish_counter(IntakeMeter& meter) {
   if (sink_.on_meter) sink_.on_meter(shown);
   metering::CounterSettings settings = *meter.rows.counter;
   settings.digit_kWh = meter.conversion.factor * meter.rows.multiplier;
+  meter.report.stamps_beside = metering::judge_stamps(meter.samples, shown.interval);
   // A register that is read a little after midnight still shows the day before.
-  if (settings.resets != metering::Resets::never) put_on_grid(meter.samples, shown.interval);
+  if (settings.resets != metering::Resets::never ||
+      meter.report.stamps_beside == metering::StampsBeside::as_grid) {
+    metering::put_on_grid(meter.samples, shown.interval);
+  }
   const auto samples = metering::with_rests(std::move(meter.samples));
   for (const Reading& reading :
        metering::readings_from_register(shown.meter, samples, shown.interval, settings,

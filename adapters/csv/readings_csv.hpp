@@ -15,6 +15,7 @@
 #include "adapters/csv/row_steps.hpp"
 #include "core/metering/reading.hpp"
 #include "core/metering/registers/interval_book.hpp"
+#include "core/metering/registers/late_stamps.hpp"
 #include "core/metering/units.hpp"
 #include "core/result.hpp"
 
@@ -82,6 +83,7 @@ struct MeterReport {
   std::chrono::seconds beside_max{0};
   std::vector<RowStep> steps;  ///< In order; the first is the one at the beginning. Up to twenty.
   std::vector<metering::RegisterNote> register_notes;
+  metering::StampsBeside stamps_beside = metering::StampsBeside::none;  ///< Of a register.
   std::uint64_t refused = 0;               ///< Rows known to be of this meter that were refused.
   std::vector<LineIssue> first_refused;    ///< Up to three of them.
   std::optional<metering::TimeSpan> span;  ///< From the earliest start to the latest end.

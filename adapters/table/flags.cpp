@@ -27,7 +27,16 @@ constexpr std::string_view kMissingWords =
     "|missing|no data|nodata|null|void|invalid|bad|fault|{fault}|down|{down}|error|offline|fehlt"
     "|fehlend|fehlwert|ausfall|ungültig|ungueltig|kein wert|manquant|manquante|absent|absente"
     "|invalide|ausente|faltante|falta|sin datos|sem dados|mancante|assente|ontbreekt|ontbrekend"
-    "|saknas|mangler|puuttuu|puuttuva|brak|brak danych|brakuje|n/a|";
+    "|saknas|mangler|puuttuu|puuttuva|brak|brak danych|brakuje|n/a|no value|no reading|not "
+    "available"
+    "|unavailable|keine daten|nicht verfügbar|pas de données|indisponible|non disponible|sin dato"
+    "|sin lectura|no disponible|em falta|sem dado|sem leitura|não disponível|nessun dato"
+    "|non disponibile|geen data|geen waarde|niet beschikbaar|ingen data|ikke tilgængelig"
+    "|ej tillgänglig|ei dataa|ei saatavilla|niedostępne|niedostępny|";
+constexpr std::string_view kNegations =
+    "|no|not|without|kein|keine|nicht|ohne|pas|sans|sin|sem|não|senza|non|geen|niet|zonder|ingen|"
+    "ikke"
+    "|uden|utan|inga|ej|ei|bez|nie|";
 /// Parts of headers.
 constexpr std::array<std::string_view, 32> kHeaderParts{
     "status",       "quality",         "qualit",          "calidad",
@@ -55,6 +64,12 @@ FlagMeaning by_word(std::string_view flag) {
   if (is_one_of(word, kMeasuredWords)) return FlagMeaning::measured;
   if (is_one_of(word, kEstimatedWords)) return FlagMeaning::estimated;
   if (is_one_of(word, kMissingWords)) return FlagMeaning::missing;
+  // "value missing", "valor em falta": what is missing stands beside it; "no error" is none.
+  if (is_one_of(word.substr(0, word.find(' ')), kNegations)) return FlagMeaning::unknown;
+  for (std::size_t at = word.find(' '); at != std::string::npos; at = word.find(' ', at + 1)) {
+    if (is_one_of(word.substr(at + 1), kMissingWords)) return FlagMeaning::missing;
+    if (is_one_of(word.substr(0, at), kMissingWords)) return FlagMeaning::missing;
+  }
   return FlagMeaning::unknown;
 }
 

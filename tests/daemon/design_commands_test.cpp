@@ -255,7 +255,7 @@ TEST_F(DesignCommands, CalibrationHasAPageAndItsMonths) {
   std::getline(months, line);
   EXPECT_EQ(line,
             "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,"
-            "revision,tzdata,estimated_share");
+            "revision,tzdata,estimated_share,value_sd");
   std::getline(measured, line);
   int count = 0;
   for (std::string figures; std::getline(measured, figures); ++count) {
@@ -269,7 +269,7 @@ TEST_F(DesignCommands, CalibrationHasAPageAndItsMonths) {
       return text.str();
     };
     EXPECT_EQ(line, of[1].str() + ",chw," + rounded(of[2]) + ",kWh/day,,," + rounded(of[3]) +
-                        ",,,yes,,,,");
+                        ",,,yes,,,,,");
   }
   EXPECT_EQ(count, 15);
 }

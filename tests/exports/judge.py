@@ -115,6 +115,8 @@ def month_problem(truth, month, row, factor):
     expected = month.energy * factor
     allowed = 0.001 * abs(expected) + truth.slack_kWh + 0.02
     allowed += max(month.missing_energy, month.missing_share * month.energy) * factor
+    if month.missing_share:  # what is filled says how far off it may be
+        allowed += 2 * float(row.get("value_sd") or 0) * calendar.monthrange(*map(int, month.name.split("-")))[1]
     if abs(row["energy"] - expected) > allowed:
         return f"{month.name}: {row['energy']:.2f} kWh, truth {expected:.2f}" + (UNUSABLE if row["usable"] == "no" else "")
     if month.missing_share < 0.02 and row["usable"] == "no" and month.is_asked_for:

@@ -69,7 +69,7 @@ class Meter:
     missing: set = dataclasses.field(default_factory=set)
     flags: list = None
     gap_cell: str = ""
-    zero_if_missing: bool = False
+    zero_cells: set = dataclasses.field(default_factory=set)  # of those that are missing
     slack_kWh: float = 0.0
     has_shape: bool = True
     written: Load = None           # what the file has of the load, where that differs
@@ -80,7 +80,7 @@ class Meter:
     def cell(self, index):
         """Of an interval; of a register, its reading number index."""
         if index in self.missing:
-            return Number(0.0, 3) if self.zero_if_missing else self.gap_cell
+            return Number(0.0, 3) if index in self.zero_cells else self.gap_cell
         if self.register:
             return number_of(self.register[index], self.unit, 3600, self.decimals)
         return number_of(self.written.amounts[index], self.unit, self.load.step, self.decimals)

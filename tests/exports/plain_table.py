@@ -152,7 +152,8 @@ class PlainTable:
             for i in lost:
                 meter.flags[i] = flags["missing"]
             meter.missing |= lost
-            meter.zero_if_missing = bool(lost) and d.chance(0.5, "zero flagged as missing")
+            if bool(lost) and d.chance(0.5, "zero flagged as missing"):
+                meter.zero_cells = lost
 
     def spend_clock_changes(self):
         """Tables of 24 hours a day: the hour that spring skips is blank or zero, autumn's two hours are added."""

@@ -31,7 +31,8 @@ def thinned(d, meter, flags=None):
     if missing and d.chance(0.2, "quality flags"):
         lost = draw_gaps(d.rng, count, per_day) - meter.missing
         meter.missing |= lost
-        meter.zero_if_missing = d.chance(0.6, "zero flagged as missing")
+        if d.chance(0.6, "zero flagged as missing"):
+            meter.zero_cells = lost
         for i in lost:
             marks[i] = missing
     return left_out, marks

@@ -452,6 +452,20 @@ void doubt_amounts(const RegisterEvidence& evidence, const MeterConfig& config,
 /// What a register did besides counting. A bounce has cost nothing.
 void describe_register(const metering::LocalCalendar& calendar, MeterRecord& record) {
   using metering::CounterEvent;
+  using metering::StampsBeside;
+  if (record.rows.stamps_beside == StampsBeside::as_grid) {
+    record.findings.push_back(
+        {record.meter.id,
+         "Its stamps lie some seconds beside its intervals, but its energy rises with these: "
+         "readings count at the full interval.",
+         {},
+         0});
+  } else if (record.rows.stamps_beside == StampsBeside::unclear) {
+    add_warning(record,
+                "Its stamps lie some seconds beside its intervals, and its energy does not show "
+                "whether it was read then or at the full interval; a peak may be off by that share "
+                "of an interval.");
+  }
   for (const metering::RegisterNote& note : record.rows.register_notes) {
     const auto& [event, before, after] = note;
     const std::string day = metering::to_string(calendar.local_time(after.time).date);

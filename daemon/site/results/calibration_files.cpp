@@ -30,7 +30,7 @@ constexpr assessment::MonthForecast kNoForecast{kAbsent, kAbsent, kAbsent,
 
 constexpr const char* kMonthsHeader =
     "month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,"
-    "revision,tzdata,estimated_share\n";
+    "revision,tzdata,estimated_share,value_sd\n";
 
 /// Ends that a prior does not have are null.
 Json prior_json(const Prior& prior) {
@@ -530,12 +530,14 @@ std::string months_csv(const Recording& recording, const std::string& tzdata) {
                                     : "";
       const std::string peak = figure.peak ? fmt::format("{:.6g}", figure.peak->kW) : "";
       const std::string peak_at = figure.peak ? metering::to_string(figure.peak->start) : "";
-      text += fmt::format("{},{},{},kWh/day,{:.6f},{:.6f},{},{},block-{}s,{},{},{},{},{:.6f}\n",
-                          metering::to_string(figure.month), record.meter.id, value,
-                          figure.coverage, figure.filled_share, peak, peak_at,
-                          figure.peak_window.count(), figure.usable ? "yes" : "no",
-                          is_site_different(recording, figure.month) ? "yes" : "no",
-                          figure.revision, tzdata, figure.estimated_share);
+      text += fmt::format(
+          "{},{},{},kWh/day,{:.6f},{:.6f},{},{},block-{}s,{},{},{},{},{:.6f},{}\n",
+          metering::to_string(figure.month), record.meter.id, value, figure.coverage,
+          figure.filled_share, peak, peak_at, figure.peak_window.count(),
+          figure.usable ? "yes" : "no", is_site_different(recording, figure.month) ? "yes" : "no",
+          figure.revision, tzdata, figure.estimated_share,
+          value.empty() ? ""
+                        : fmt::format("{:.4g}", std::sqrt(figure.daily_average_variance_kWh2)));
     }
   }
   return text;
@@ -559,7 +561,7 @@ std::string months_csv(const DesignCalibration& result) {
     for (const std::size_t i : in_order_of_time(result.months)) {
       const std::string value = value_of(meter.consumption, i);
       const std::string peak = value_of(meter.peak, i);
-      text += fmt::format("{},{},{},{},,,{},,,{},,,,\n", result.month_names[i], id, value, unit,
+      text += fmt::format("{},{},{},{},,,{},,,{},,,,,\n", result.month_names[i], id, value, unit,
                           peak, value.empty() && peak.empty() ? "no" : "yes");
     }
   }

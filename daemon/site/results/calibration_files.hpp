@@ -38,8 +38,8 @@ using FollowUp = tl::expected<DriftSummary, std::string>;
 [[nodiscard]] std::string points_json(const assessment::AssessedCalibration& result);
 
 /// `month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,method,usable,different,revision,
-/// tzdata,estimated_share`, one row a meter and month; `different` when any meter says that the
-/// month is not like the same months before.
+/// tzdata,estimated_share,value_sd`, one row a meter and month; `different` when any meter says
+/// that the month is not like the same months before, `value_sd` by what was filled.
 [[nodiscard]] std::string months_csv(const Recording& recording, const std::string& tzdata);
 
 /// The same of a design's measurements. What only readings can tell is blank; a month without a

@@ -49,6 +49,16 @@ TEST(Flags, UnknownOnesAreNamed) {
   EXPECT_THAT(meanings({{"W", 3, 0}, {"", 40, 0}}).unknown, IsEmpty());
 }
 
+TEST(Flags, WordsBesideThatOfWhatIsMissing) {
+  for (const char* flag : {"Em falta", "Valor em falta", "Sin dato", "value missing", "NO DATA",
+                           "Brak odczytu", "Keine Daten", "ei saatavilla", "Pas de données"}) {
+    EXPECT_THAT(meanings({{"OK", 100, 0}, {flag, 5, 5}}).missing, ElementsAre(flag));
+  }
+  for (const char* flag : {"no error", "Kein Ausfall", "sans absent", "OFF"}) {
+    EXPECT_THAT(meanings({{"OK", 100, 0}, {flag, 5, 5}}).missing, IsEmpty());
+  }
+}
+
 // Beside a flag the value counts for nothing, or as an estimate; drawn rows, truth known.
 TEST(Flags, RowsAreReadAsTheirFlagsSay) {
   struct Words {
