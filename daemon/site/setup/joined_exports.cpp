@@ -97,8 +97,8 @@ void join(SurveyedMeter& meter, const SurveyedMeter& more) {
   meter.as_register.rated_kW = std::max(meter.as_register.rated_kW, more.as_register.rated_kW);
   if (meter.interval != more.interval) meter.is_of_other_steps = true;
   meter.interval = std::max(meter.interval, more.interval);
-  meter.values = static_cast<std::uint64_t>((hours_before + hours_added) /
-                                            metering::in_hours(meter.interval));
+  meter.values =
+      static_cast<std::uint64_t>((hours_before + hours_added) / metering::in_hours(meter.interval));
   meter.grid_tolerance = std::max(meter.grid_tolerance, more.grid_tolerance);
   meter.readings += more.readings;
   meter.refused += more.refused;
