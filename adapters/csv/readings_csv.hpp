@@ -33,7 +33,7 @@ struct MeterRows {
   /// meter come at the end of the file; its samples are held until then.
   std::optional<metering::CounterSettings> counter;
   metering::ResetTimes resets = {};  ///< Of a counter that sets itself to zero.
-  /// Stamps this far beside the grid of intervals are put on it; at most a tenth of the interval.
+  /// Stamps this far beside the grid of intervals are put on it; at most a fifth of the interval.
   std::chrono::seconds grid_tolerance{0};
 };
 

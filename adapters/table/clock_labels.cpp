@@ -196,7 +196,7 @@ Result<ClockLabels> read_clock_labels(RowSource& rows, const TableShape& shape,
       header.clear();
       values_at.clear();
       for (const std::string_view cell : row.cells) header.push_back(utf8_of(cell));
-      time_at = find_column(header, shape.time_column);
+      time_at = find_time_in_header(header, shape);
       clock_at = find_column(header, shape.clock_column);
       for (const std::string& value : values) {
         if (const auto at = find_column(header, value)) values_at.push_back(*at);
@@ -207,8 +207,9 @@ Result<ClockLabels> read_clock_labels(RowSource& rows, const TableShape& shape,
     const auto stamp = parse_stamp(row.cells[*time_at], shape.time_format);
     if (const auto time = parse_time_of_day(row.cells[*clock_at]);
         time && shape.interval > seconds{0} && *time % shape.interval != seconds{0}) {
-      return ClockLabels{ClockFormat::time, "times such as " + csv::in_quotes(row.cells[*clock_at]) +
-                                                " are no whole intervals"};
+      return ClockLabels{
+          ClockFormat::time,
+          "times such as " + csv::in_quotes(row.cells[*clock_at]) + " are no whole intervals"};
     }
     const auto label = label_of(row.cells[*clock_at], shape.interval);
     if (!stamp || !label) continue;

@@ -10,6 +10,7 @@
 #include "adapters/csv/fields.hpp"
 #include "adapters/csv/reading_intake.hpp"
 #include "adapters/table/cells/cell_number.hpp"
+#include "adapters/table/cells/column_kinds.hpp"
 #include "adapters/table/clock_labels.hpp"
 #include "adapters/table/delimited.hpp"
 #include "adapters/table/header_rows.hpp"
@@ -219,6 +220,7 @@ class TableReader {
     const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
     clocks_.assign(clocks, ClockReader{calendar_});
     shown_.assign(clocks, {});
+    skipped_until_.assign(clocks, Instant::min());
     return {};
   }
 
@@ -350,7 +352,7 @@ class TableReader {
     for (; waiting_at_ < waiting_.size(); ++waiting_at_) {
       const auto doubt = end_in_doubt(waiting_.row(waiting_at_));
       if (doubt) {
-        const auto next = shown_next(doubt->clock);
+        const auto next = shown_next(*doubt, has_value(waiting_.row(waiting_at_)));
         const bool is_too_long = waiting_.size() - waiting_at_ > kWaitingMax;
         if (!next && !is_whole && !is_too_long) return;
         if (next && doubt->end.is_followed_by(*next)) end_ = doubt;
@@ -364,12 +366,17 @@ class TableReader {
     looked_at_ = 1;
   }
 
-  /// What a clock shows behind the first row that waits.
-  [[nodiscard]] std::optional<Instant> shown_next(std::size_t clock) {
+  /// What a clock shows behind the first row that waits. Some write the hour that the clock skips,
+  /// without values: those rows say nothing.
+  [[nodiscard]] std::optional<Instant> shown_next(const EndInDoubt& doubt, bool is_filled) {
     for (; looked_at_ < waiting_.size(); ++looked_at_) {
       const TableRow& row = waiting_.row(looked_at_);
-      if (clock_index(row) != clock) continue;
-      if (const auto shown = clock_of(row, true)) return shown;
+      if (clock_index(row) != doubt.clock) continue;
+      const auto shown = clock_of(row, true);
+      if (!shown) continue;
+      const bool is_skipped =
+          doubt.end.jump.count() > 0 && *shown <= doubt.end.clock + doubt.end.jump;
+      if (!is_skipped || !is_filled || has_value(row)) return shown;
     }
     return {};
   }
@@ -495,11 +502,15 @@ class TableReader {
     note_clock_put_back(clock, written->clock);
     if (end_ && end_->clock == clock) {
       clocks_[clock].pass(end_->end);
+      skipped_until_[clock] = end_->end.clock + end_->end.jump;
       return end_->end.instant;
     }
+    const bool is_in_skipped = written->clock <= skipped_until_[clock] &&
+                               clocks_[clock].ends_in_skipped_hour(written->clock);
+    if (is_in_skipped && !has_value(row)) return std::nullopt;
     const auto instant = clocks_[clock].instant_of(written->clock);
-    if (clocks_[clock].hour() != ClockReader::Hour::usual) {
-      count_change(row, clocks_[clock].hour(), written->clock);
+    if (clocks_[clock].hour() != ClockReader::Hour::usual || !is_quiet()) {
+      count_change(row, clocks_[clock], written->clock);
     }
     last_ = instant.value_or(last_);
     if (instant) return instant;
@@ -529,26 +540,36 @@ class TableReader {
     last = shown;
   }
 
-  void count_change(const TableRow& row, ClockReader::Hour hour, Instant clock) {
-    bool has_number = false;
-    bool has_value = false;
-    for (const std::size_t column : value_) {
+  /// Whether any meter's cell in it satisfies a condition of its number.
+  template <class Condition>
+  [[nodiscard]] bool has_number(const TableRow& row, Condition condition) const {
+    return std::ranges::any_of(value_, [&](std::size_t column) {
       const std::string_view text = cell(row, column);
       auto number = parse_cell(text, shape_.decimal);
       if (!number) number = parse_cell(split_number(text).number, shape_.decimal);
-      has_number = has_number || number.has_value();
-      has_value = has_value || number.value_or(0.0) != 0.0;
-    }
-    if (hour == ClockReader::Hour::skipped && !has_number) return;
+      return number && condition(*number);
+    });
+  }
+  [[nodiscard]] bool has_value(const TableRow& row) const {
+    return has_number(row, [](double number) { return number != 0.0; });
+  }
+
+  void count_change(const TableRow& row, const ClockReader& reader, Instant clock) {
+    const ClockReader::Hour hour = reader.hour();
+    const bool is_end = reader.ends_in_skipped_hour(clock);
+    if (hour == ClockReader::Hour::usual && !is_end) return;
+    const bool is_there = has_number(row, [](double) { return true; });
+    if ((hour == ClockReader::Hour::skipped || is_end) && !is_there) return;
     ClockChange& change =
         facts_.changes[metering::Day{std::chrono::floor<std::chrono::days>(clock)}];
-    const auto add = [hour](ClockChange::Counts& counts) {
+    const auto add = [&](ClockChange::Counts& counts) {
       if (hour == ClockReader::Hour::skipped) ++counts.skipped;
+      if (is_end) ++counts.skipped_ends;
       if (hour == ClockReader::Hour::first) ++counts.first;
       if (hour == ClockReader::Hour::second) ++counts.second;
     };
     add(change.rows);
-    if (has_value) add(change.values);
+    if (has_value(row)) add(change.values);
   }
 
   /// The same letters stand for zones on several continents.
@@ -698,7 +719,8 @@ class TableReader {
     Instant last = Instant::min();
     seconds step{0};  ///< Between the two times before.
   };
-  std::vector<Shown> shown_;  ///< What each clock showed last.
+  std::vector<Shown> shown_;            ///< What each clock showed last.
+  std::vector<Instant> skipped_until_;  ///< Where an hour that it skips is written.
   bool is_above_data_ = false;
   std::uint64_t above_ = 0;  ///< Rows between header and data so far.
   std::uint64_t last_above_ = 0;
@@ -716,7 +738,7 @@ class TableReader {
   KeptRows kept_;
   Instant last_{};              ///< Of the last row.
   metering::TimeSpan quiet_{};  ///< Where no clock is changed.
-  KeptRows waiting_;       ///< From one whose time is in doubt on.
+  KeptRows waiting_;            ///< From one whose time is in doubt on.
   std::size_t waiting_at_ = 0;
   std::size_t looked_at_ = 1;      ///< The first that waits and was not looked at for its time.
   std::optional<EndInDoubt> end_;  ///< That of the row being taken, once it is no doubt.
@@ -737,6 +759,16 @@ std::optional<std::size_t> find_column(std::span<const std::string> header,
   }
   if (named != header.end()) return static_cast<std::size_t>(named - header.begin());
   return numbered(column);
+}
+
+std::optional<std::size_t> find_time_in_header(std::span<const std::string> header,
+                                               const TableShape& shape) {
+  const auto time = find_column(header, shape.time_column);
+  if (!time || numbered(shape.time_column)) return time;
+  if (!shape.clock_column.empty() && !find_column(header, shape.clock_column)) return {};
+  const bool has_dates =
+      std::ranges::any_of(header, [](const std::string& cell) { return is_date(cell); });
+  return has_dates ? std::nullopt : time;
 }
 
 char likely_separator(std::string_view line) {

@@ -16,9 +16,10 @@ namespace recald::table {
 /// The rows of a day on which the clock changes.
 struct ClockChange {
   struct Counts {
-    std::uint64_t skipped = 0;  ///< In the hour that the clock skips …
-    std::uint64_t first = 0;    ///< … in the one that it shows twice, the first time …
-    std::uint64_t second = 0;   ///< … and the second.
+    std::uint64_t skipped = 0;       ///< In the hour that the clock skips …
+    std::uint64_t skipped_ends = 0;  ///< … or there if times are ends of intervals …
+    std::uint64_t first = 0;         ///< … in the one that it shows twice, the first time …
+    std::uint64_t second = 0;        ///< … and the second.
   };
   /// Rows; those in the hour that is skipped only if they have a number.
   Counts rows;
@@ -79,6 +80,11 @@ struct ClockFacts {
                                                      const metering::LocalCalendar& calendar,
                                                      const csv::ReadingsSink& sink,
                                                      ClockFacts* facts = nullptr);
+
+/// Index of the time column in what may be a table's header; nothing if it is none: without the
+/// clock column, or a line above the table, "Date;11/12/2023".
+[[nodiscard]] std::optional<std::size_t> find_time_in_header(std::span<const std::string> header,
+                                                             const TableShape& shape);
 
 /// Index of a column in a header, by name or as "#3"; nothing if there is no such column.
 [[nodiscard]] std::optional<std::size_t> find_column(std::span<const std::string> header,

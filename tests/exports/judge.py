@@ -195,6 +195,8 @@ def is_told(problem, traits, warnings):
         words = [r"utility|taken for"]
     elif problem.endswith(OTHER_CLOCK):
         words = [r"\bclock\b|time ?zone|stamps are taken"]
+    elif ": peak " in problem and re.search("than the peak", about):
+        return True
     else:
         words = [r"taken to be in|\bunit\b"] + [WARNINGS[trait] for trait in traits if trait in WARNINGS]
     return problem.endswith(UNUSABLE) or any(re.search(word, about, re.IGNORECASE) for word in words)

@@ -155,6 +155,9 @@ std::optional<Instant> ClockReader::with(Instant clock, seconds offset) const {
 std::optional<Instant> ClockReader::instant_of(Instant clock) {
   const std::optional<Instant> last = last_clock_;
   last_clock_ = clock;
+  const bool is_again = last && clock >= *last && is_beside(clock - *last);
+  if (last && clock > *last && !is_again) step_ = clock - *last;
+  was_again_ = is_again;
   // No zone changes twice within two days, so the offsets a day before and a day after
   // are the only ones.
   const auto before = with(clock, calendar_->utc_offset(clock - days{1}));
@@ -169,10 +172,18 @@ std::optional<Instant> ClockReader::instant_of(Instant clock) {
   const Instant first = std::min(*before, *after);
   const Instant second = std::max(*before, *after);
   if (last && clock < *last) in_second_pass_ = true;
-  // If a file is sorted by the written stamp, both occurrences of a time are neighbours.
-  const bool is_second = in_second_pass_ || (last && clock == *last);
+  // If a file is sorted by the written stamp, both occurrences of a time are neighbours, some
+  // seconds apart if its stamps lie beside the grid.
+  const bool is_second = in_second_pass_ || is_again;
   hour_ = is_second ? Hour::second : Hour::first;
   return is_second ? second : first;
+}
+
+bool ClockReader::is_beside(seconds later) const {
+  constexpr int kBesideShare = 10;  // of a step
+  constexpr seconds kBesideMax{60};
+  return later == seconds{0} ||
+         (!was_again_ && later <= kBesideMax && kBesideShare * later <= step_);
 }
 
 std::optional<Instant> ClockReader::beside_change(Instant clock, std::optional<Instant> last) {
@@ -205,6 +216,12 @@ std::optional<ClockReader::EndAtChange> ClockReader::end_at_change(Instant clock
   if (!with(clock - seconds{1}, before) || is_old) return {};
   if (end.jump.count() > 0) return is_new ? std::nullopt : std::optional{end};
   return in_second_pass_ ? std::nullopt : std::optional{end};
+}
+
+bool ClockReader::ends_in_skipped_hour(Instant clock) const {
+  const Instant within = clock - seconds{1};
+  return !with(within, calendar_->utc_offset(clock - days{1})) &&
+         !with(within, calendar_->utc_offset(clock + days{1}));
 }
 
 void ClockReader::pass(const EndAtChange& end) {

@@ -97,12 +97,19 @@ class ClockReader {
   };
   [[nodiscard]] std::optional<EndAtChange> end_at_change(metering::Instant clock) const;
 
+  /// Whether a time is the end of an interval within the hour that the clock skips, if its zone's
+  /// changes are not the clock's: 02:15 to 03:00 where it goes from 02:00 to 03:00.
+  [[nodiscard]] bool ends_in_skipped_hour(metering::Instant clock) const;
+
   /// Takes the time of `end` as the next.
   void pass(const EndAtChange& end);
 
  private:
   [[nodiscard]] std::optional<metering::Instant> with(metering::Instant clock,
                                                       std::chrono::seconds offset) const;
+
+  /// Whether a time so much later is that before it again.
+  [[nodiscard]] bool is_beside(std::chrono::seconds later) const;
 
   /// Of a time some seconds beside the full minutes at which a clock is changed: 01:59:59, which is
   /// skipped, for 02:00, or comes again as 01:00 does. @return nothing: it is none
@@ -111,6 +118,8 @@ class ClockReader {
 
   const metering::LocalCalendar* calendar_;
   std::optional<metering::Instant> last_clock_;
+  std::chrono::seconds step_{0};  ///< Between the two times before.
+  bool was_again_ = false;        ///< The time before was that before it, or some seconds later.
   bool in_second_pass_ = false;
   Hour hour_ = Hour::usual;
 };

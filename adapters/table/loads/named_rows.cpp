@@ -76,7 +76,7 @@ class JoinedNames final : public RowSource {
 class TitledRows final : public RowSource {
  public:
   TitledRows(std::unique_ptr<RowSource> rows, const TableShape& shape)
-      : rows_{std::move(rows)}, time_column_{shape.time_column}, format_{shape.time_format} {}
+      : rows_{std::move(rows)}, shape_{shape} {}
 
   bool next(TableRow& row) override {
     while (rows_->next(row)) {
@@ -100,12 +100,13 @@ class TitledRows final : public RowSource {
   [[nodiscard]] std::vector<std::string> said() const override { return rows_->notes(); }
 
   bool is_header(const TableRow& row) {
-    for (std::size_t i = 0; i < row.cells.size(); ++i) {
-      if (row.cells[i].empty() || utf8_of(row.cells[i]) != time_column_) continue;
-      time_ = i;
-      return true;
-    }
-    return false;
+    const bool has_name = std::ranges::any_of(row.cells, [&](std::string_view cell) {
+      return !cell.empty() && utf8_of(cell) == shape_.time_column;
+    });
+    if (!has_name) return false;
+    const auto time = find_time_in_header(texts_of(row), shape_);
+    if (time) time_ = *time;
+    return time.has_value();
   }
 
   bool is_title(const TableRow& row) {
@@ -113,7 +114,7 @@ class TitledRows final : public RowSource {
                                       [](std::string_view cell) { return !cell.empty(); });
     if (filled < 1 || filled > 2 || !row.problem.empty()) return false;
     const std::string_view time = time_ < row.cells.size() ? row.cells[time_] : "";
-    if (parse_stamp(time, format_)) return false;
+    if (parse_stamp(time, shape_.time_format)) return false;
     above_.clear();
     for (const std::string_view cell : row.cells) {
       if (cell.empty()) continue;
@@ -124,8 +125,7 @@ class TitledRows final : public RowSource {
   }
 
   std::unique_ptr<RowSource> rows_;
-  std::string time_column_;
-  TimeFormat format_;
+  TableShape shape_;
   std::size_t time_ = 0;
   std::size_t width_ = 0;  ///< Cells of the block's header.
   std::string above_;      ///< The latest line that may be a title.

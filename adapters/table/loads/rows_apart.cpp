@@ -177,7 +177,7 @@ class ApartSearch {
   void find_places(const TableRow& row) {
     std::vector<std::string> header;
     for (const std::string_view one : row.cells) header.push_back(utf8_of(one));
-    time_ = find_column(header, shape_.time_column);
+    time_ = find_time_in_header(header, shape_);
     if (!time_) return;
     clock_ = shape_.clock_column.empty() ? std::nullopt : find_column(header, shape_.clock_column);
     const bool has_header = !shape_.time_column.starts_with('#');

@@ -9,7 +9,7 @@ namespace recald::metering {
 namespace {
 
 /// Increase this when the program itself closes months differently.
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 
 /// FNV-1a, 64 bit, used to distinguish rules, not to protect them. @see RFC draft eastlake-fnv.
 class Digest {
@@ -58,7 +58,7 @@ void add(const FillOptions& options, Digest& digest) {
   }
   digest.add(options.line_max);
   digest.add(options.days_min);
-  digest.add(options.independent_gap_max);
+  digest.add(options.by_slots_gap_max);
 }
 
 void add(const Meter& meter, Digest& digest) {

@@ -63,11 +63,10 @@ class MonthFiller {
     const double hours = month_.grid->interval_h();
     for (const Pool& pool : pools_) {
       if (pool.filled == 0.0) continue;
-      result.variance_kWh2 += pool.variance_kW2 *
-                              (pool.filled + pool.filled * pool.filled / pool.readings.n) * hours *
-                              hours;
+      result.variance_kWh2 +=
+          pool.variance_kW2 * pool.filled * pool.filled / pool.readings.n * hours * hours;
     }
-    result.variance_kWh2 += line_variance_kWh2_ + block_variance_kWh2();
+    result.variance_kWh2 += gap_variance_kWh2_ + block_variance_kWh2();
     return result;
   }
 
@@ -138,13 +137,18 @@ class MonthFiller {
       fill_by_line(gap);
       return;
     }
-    const bool as_days = length > options_.independent_gap_max;
+    const bool as_days = length > options_.by_slots_gap_max;
+    double spread_kWh = 0.0;
     for (int slot = gap.begin; slot < gap.end; ++slot) {
       FillMethod method = FillMethod::none;
       Pool& pool = pool_for(slot, method);
-      if (!as_days) pool.filled += 1.0;
+      if (!as_days) {
+        pool.filled += 1.0;
+        spread_kWh += std::sqrt(pool.variance_kW2) * month_.grid->interval_h();
+      }
       set(slot, pool.readings.mean, method);
     }
+    gap_variance_kWh2_ += spread_kWh * spread_kWh;
     if (as_days) days_missing_ += std::chrono::duration<double, std::ratio<86'400>>(length).count();
   }
 
@@ -158,7 +162,7 @@ class MonthFiller {
       spread_kWh += std::sqrt(pool_for(slot, method).variance_kW2) * month_.grid->interval_h();
       set(slot, from_kW + (to_kW - from_kW) * (slot - gap.begin + 1) / steps, FillMethod::line);
     }
-    line_variance_kWh2_ += spread_kWh * spread_kWh;
+    gap_variance_kWh2_ += spread_kWh * spread_kWh;
   }
 
   void set(int slot, double value_kW, FillMethod method) {
@@ -251,7 +255,7 @@ class MonthFiller {
   std::vector<Pool> pools_;
   int filled_ = 0;
   double days_missing_ = 0.0;
-  double line_variance_kWh2_ = 0.0;
+  double gap_variance_kWh2_ = 0.0;
 };
 
 }  // namespace

@@ -16,8 +16,8 @@ struct FillOptions {
   std::vector<Day> holidays;  ///< Local days treated as not working.
   std::chrono::seconds line_max{2 * 3600};
   int days_min = 3;  ///< With fewer measured days at a time of day, a wider mean is used.
-  /// In longer gaps, errors of slots are not independent: the variance of whole days is used.
-  std::chrono::seconds independent_gap_max{24 * 3600};
+  /// Of longer gaps the variance of whole days is used.
+  std::chrono::seconds by_slots_gap_max{24 * 3600};
 };
 
 struct FillResult {
@@ -29,12 +29,13 @@ struct FillResult {
 /// `missing` slots become `filled`; `suspect` ones stay suspect, with an estimate beside the value.
 /// A month without any measured slot gets no estimates.
 ///
-/// With n days measured at a time of day, sample variance s² and J slots filled from that mean,
-///   Var += s² (J + J²/n) h²,  h the interval in hours:
-/// J independent deviations plus the error of the mean they share. Slots of gaps longer than
-/// `independent_gap_max` use the daily means of complete days instead, D days missing of n_d:
+/// A building that draws more than usual does so for hours: within a gap errors are taken to be
+/// fully correlated, from gap to gap to be independent. With n days measured at a time of day,
+/// sample variance s² and J slots filled from that mean, h the interval in hours,
+///   Var += (Σ s h)² over each gap, and s² J²/n h² for the error of the mean they share,
+/// without the latter where a line fills the gap. Gaps longer than `by_slots_gap_max` use the daily
+/// means of complete days instead, D days missing of n_d:
 ///   Var += s_day² (D + D²/n_d) (24 h)².
-/// A line's errors within its gap are assumed to be fully correlated, (Σ s h)².
 /// @see the seed, section 2, for the estimate.
 [[nodiscard]] FillResult fill_gaps(MonthSlots& month, const FillOptions& options);
 

@@ -124,8 +124,7 @@ class LargeLoads {
   }
 
   [[nodiscard]] Large large_of(const MonthSlots& month, std::size_t slot) const {
-    const bool is_single =
-        !is_above(month, slot + 1) && (slot == 0 || !is_above(month, slot - 1));
+    const bool is_single = !is_above(month, slot + 1) && (slot == 0 || !is_above(month, slot - 1));
     return {&month, month.grid->day(static_cast<int>(slot)), sign_ * month.measured_kW[slot],
             is_single};
   }
@@ -139,9 +138,11 @@ class LargeLoads {
         const auto i = static_cast<std::size_t>(slot);
         if (month.validity[i] != Validity::ok || month.measured_kW[i] == 0.0) continue;
         ++reported;
-        if (!is_above(month, i)) continue;
-        ++above;
-        large_.push_back(large_of(month, i));
+        // Loads just below the limit speak for those just above it.
+        if (kSameSize * sign_ * month.measured_kW[i] > limit_kW_) {
+          large_.push_back(large_of(month, i));
+        }
+        if (is_above(month, i)) ++above;
       }
       if (above > 0 && above > kSlipOfDay * reported)
         slips_.emplace_back(&month, static_cast<int>(day));

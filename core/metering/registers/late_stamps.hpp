@@ -25,7 +25,7 @@ enum class StampsBeside {
 [[nodiscard]] StampsBeside judge_stamps(std::span<const RegisterSample> samples,
                                         std::chrono::seconds interval);
 
-/// Puts samples that lie up to a tenth of an interval and two minutes beside it on the grid.
+/// Puts samples that lie up to a fifth of an interval and two minutes beside it on the grid.
 void put_on_grid(std::vector<RegisterSample>& samples, std::chrono::seconds interval);
 
 }  // namespace recald::metering

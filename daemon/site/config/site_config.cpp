@@ -204,13 +204,13 @@ std::string read_meter_id(TomlReader& table) {
   return id;
 }
 
-/// Stamps may lie beside the grid by a tenth of the interval, or nobody knows which one they mean.
+/// Stamps may lie beside the grid by a fifth of the interval, or nobody knows which one they mean.
 seconds read_grid_tolerance(TomlReader& table, const std::optional<seconds>& interval) {
   const auto tolerance = table.duration("grid_tolerance").value_or(seconds{0});
-  const seconds longest = interval.value_or(std::chrono::hours{1}) / 10;
+  const seconds longest = interval.value_or(std::chrono::hours{1}) / 5;
   if (tolerance <= longest) return tolerance;
   table.problem_at("grid_tolerance",
-                   fmt::format("'grid_tolerance' is {} s; it may be a tenth of the interval at "
+                   fmt::format("'grid_tolerance' is {} s; it may be a fifth of the interval at "
                                "most, {} s",
                                tolerance.count(), longest.count()));
   return longest;

@@ -28,6 +28,7 @@ constexpr double kNearlyAll = 0.95;
 constexpr double kRestOfReset = 0.3;     // that is left of a register that was set to zero
 constexpr double kDaysWithResets = 0.3;  // on the others nothing was used
 constexpr double kFarInSteps = 50.0;     // how far a net register moves, in its largest steps
+constexpr double kLargeStep = 2.0;       // of them: an exchange, or another load
 constexpr double kRatedMargin = 1.5;
 constexpr double kRatedDoubt = 1.2;  // of the rating: as a counter doubts a rise
 constexpr std::size_t kExchangesMax = 20;
@@ -76,6 +77,15 @@ double RegisterEvidence::Largest::confirmed() const {
     if (2.0 * sizes[i + kConfirmedBy] >= sizes[i]) return sizes[i];
   }
   return sizes.empty() ? 0.0 : sizes.back();
+}
+
+/// Whether small steps reach so far: a load that was once much larger has gone there in two.
+bool RegisterEvidence::Largest::reach_small(double range) const {
+  const double small = confirmed();
+  for (const One& one : heap) {
+    if (one.size > kLargeStep * small) range -= one.size;
+  }
+  return range >= kFarInSteps * small;
 }
 
 void RegisterEvidence::take(Instant time, double value_kWh) {
@@ -184,8 +194,7 @@ RegisterVerdict RegisterEvidence::verdict(const LocalCalendar& calendar) const {
                           : "it rises all month and falls to zero when the next begins";
   } else if (hardly_falls()) {
     verdict.because = "its values hardly ever fall: a cumulative register";
-  } else if (falls_ >= kRisesMin &&
-             highest_kWh_ - lowest_kWh_ >= kFarInSteps * steps_kWh_.confirmed()) {
+  } else if (falls_ >= kRisesMin && steps_kWh_.reach_small(highest_kWh_ - lowest_kWh_)) {
     verdict.runs_back = true;
     verdict.because = "it moves far in small steps, up and down: a register that counts back";
   } else {

@@ -60,6 +60,7 @@ class RegisterEvidence {
     void take(double size, const RegisterStep& step);
     /// The largest size that three others come near to; 0 before the first step.
     [[nodiscard]] double confirmed() const;
+    [[nodiscard]] bool reach_small(double range) const;
   };
 
   void take_fall(const RegisterStep& step);

@@ -53,6 +53,7 @@ std::optional<T> certain_value(std::span<const SurveyedExport> exports, const Ki
 
 void take_larger(table::ClockChange::Counts& known, const table::ClockChange::Counts& counts) {
   known.skipped = std::max(known.skipped, counts.skipped);
+  known.skipped_ends = std::max(known.skipped_ends, counts.skipped_ends);
   known.first = std::max(known.first, counts.first);
   known.second = std::max(known.second, counts.second);
 }
@@ -91,27 +92,40 @@ bool is_of_rows(const SurveyedMeter& meter) { return !meter.is_register; }
 
 using MeterKey = std::pair<std::string, std::string>;  // row and column
 
-/// Registers of a kind, as the file shows them that has most of each.
+std::uint64_t moves(const RegisterVerdict& verdict) { return verdict.rises + verdict.falls; }
+
+/// Registers of a kind, as the file shows them that has most of each. What in a short file passes
+/// for one is none if a much longer one shows amounts.
 std::map<MeterKey, RegisterVerdict> registers_of(std::span<const SurveyedExport> exports,
                                                  const Kind& kind) {
+  constexpr std::uint64_t kMuchLonger = 4;
   std::map<MeterKey, RegisterVerdict> known;
+  std::map<MeterKey, std::uint64_t> amounts;  // how often they move in the longest file
   for (const std::size_t i : kind) {
     for (const SurveyedMeter& meter : exports[i].meters) {
       const RegisterVerdict& shown = meter.as_register;
+      if (!meter.is_register) {
+        std::uint64_t& most = amounts[{meter.name_in_file, meter.column}];
+        most = std::max(most, moves(shown));
+      }
       if (!meter.is_register || !shown.is_register) continue;
       const auto [at, is_new] = known.try_emplace({meter.name_in_file, meter.column}, shown);
       const double rated_kW = std::max(at->second.rated_kW, shown.rated_kW);
-      if (shown.rises + shown.falls > at->second.rises + at->second.falls) at->second = shown;
+      if (moves(shown) > moves(at->second)) at->second = shown;
       at->second.rated_kW = rated_kW;
     }
+  }
+  for (auto& [key, shown] : known) {
+    if (amounts[key] > kMuchLonger * moves(shown)) shown = {};
   }
   return known;
 }
 
-/// Whether a file is too short to contradict what another shows of the register.
-bool may_be_register(const SurveyedMeter& meter, const RegisterVerdict& shown) {
+/// Whether a file is too short to contradict what another shows of the meter.
+bool may_be_as(const SurveyedMeter& meter, const RegisterVerdict& shown) {
   constexpr std::uint64_t kFewFalls = 3;
-  if (meter.is_told_register) return false;
+  if (meter.is_told_kind) return false;
+  if (!shown.is_register) return meter.is_register;
   if (meter.is_register) {
     return meter.as_register.resets != shown.resets && meter.as_register.falls <= kFewFalls;
   }
@@ -142,7 +156,7 @@ void hint_of_rows(const SurveyedExport& one, const std::map<MeterKey, RegisterVe
   for (const SurveyedMeter& meter : one.meters) {
     const MeterKey key{meter.name_in_file, meter.column};
     const auto known = registers.find(key);
-    if (known == registers.end() || !may_be_register(meter, known->second)) continue;
+    if (known == registers.end() || !may_be_as(meter, known->second)) continue;
     hint().registers[key] = known->second;
   }
 }

@@ -41,7 +41,9 @@ std::optional<ChangeDays> days_of_fixed_clock(
   for (const auto& [day, change] : facts.changes) {
     if (change.rows.second > 0 || facts.put_back.contains(day)) return {};
     const table::ClockChange::Counts& counts = change.*counts_of;
-    if (static_cast<double>(counts.skipped) >= kMost * per_hour) {
+    // Whether times are starts or ends: of the hour that is skipped, its rows have what they say.
+    const auto skipped = std::min(counts.skipped, counts.skipped_ends);
+    if (static_cast<double>(skipped) >= kMost * per_hour) {
       ++springs;
       spring = day;
     }

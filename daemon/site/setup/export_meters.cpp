@@ -183,7 +183,7 @@ Result<std::vector<SurveyedMeter>> meters_of_rows(const std::filesystem::path& f
       header.clear();
       for (const std::string_view cell : row.cells) header.push_back(utf8_of(cell));
       meter_at = table::find_column(header, shape.meter_column);
-      time_at = table::find_column(header, shape.time_column);
+      time_at = table::find_time_in_header(header, shape);
       unit_at = table::find_column(header, shape.unit_column);
       if (!shape.time_column.starts_with('#')) continue;
     }
@@ -319,11 +319,16 @@ void leave_out_volumes(SurveyedExport& survey) {
 void guess_by_file_name(SurveyedExport& survey) {
   if (survey.meters.size() != 1) return;
   SurveyedMeter& meter = survey.meters.front();
-  if (!meter.utility.because.starts_with("guessed")) return;
   const UtilityGuess by_file =
       guess_utility(survey.files.front().stem().string(), meter.unit.value);
-  if (by_file.because == "by its name") {
+  if (by_file.because != "by its name") return;
+  if (meter.utility.because.starts_with("guessed")) {
     meter.utility = {by_file.utility, "by its file's name"};
+  } else if (meter.utility.value != by_file.utility) {
+    survey.notes.push_back(
+        fmt::format("{}: taken for {}, {}; its file's name says {}.",
+                    survey.files.front().stem().string(), metering::to_string(meter.utility.value),
+                    meter.utility.because, metering::to_string(by_file.utility)));
   }
 }
 

@@ -241,8 +241,8 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     const bool is_rate = unit && unit->is_rate;
     const bool was_read_as_register = meter.is_register && meter.as_register.is_register;
     const bool has_parts = !meter.further_names.empty() || !meter.further_columns.empty();
-    const bool may_judge = !has_parts && !meter.is_told_register && !watch.as_register.may_rest();
-    if (!was_read_as_register || may_judge) {
+    const bool may_judge = !has_parts && !watch.as_register.may_rest();
+    if (!meter.is_told_kind && (!was_read_as_register || may_judge)) {
       meter.as_register = watch.as_register.verdict(calendar);
     }
     meter.is_register = !is_rate && (meter.is_register || meter.as_register.is_register);
@@ -308,7 +308,7 @@ std::optional<seconds> first_offset(const std::filesystem::path& file,
   for (table::TableRow row; (*rows)->next(row);) {
     if (!time_at) {
       header.assign(row.cells.begin(), row.cells.end());
-      time_at = table::find_column(header, guess.shape.time_column);
+      time_at = table::find_time_in_header(header, guess.shape);
       if (!guess.shape.time_column.starts_with('#')) continue;
     }
     if (!time_at || *time_at >= row.cells.size()) continue;

@@ -43,7 +43,7 @@ struct SurveyedMeter {
   bool is_of_other_steps = false;    ///< Its rows come at others than its interval.
   bool needs_heating_value = false;  ///< Gas by volume.
   bool is_register = false;
-  bool is_told_register = false;           ///< By other files of its kind.
+  bool is_told_kind = false;               ///< Other files say whether it is a register.
   RegisterVerdict as_register;             ///< Of a register: of what kind, and more.
   std::chrono::seconds grid_tolerance{0};  ///< Its stamps lie beside the grid by so much.
   double zero_share = 0.0;

@@ -154,7 +154,7 @@ std::optional<seconds> usual_step(const std::filesystem::path& file,
     if (!time) {
       std::vector<std::string> header;
       for (const std::string_view cell : row.cells) header.push_back(utf8_of(cell));
-      time = table::find_column(header, shape.time_column);
+      time = table::find_time_in_header(header, shape);
       clock = table::find_column(header, shape.clock_column);
       meter = table::find_column(header, shape.meter_column);
       if (!shape.time_column.starts_with('#')) continue;
@@ -278,7 +278,7 @@ Result<std::vector<table::GuessedColumn>> columns_of_further_blocks(
   for (table::TableRow row; rows->next(row);) {
     if (first.empty()) {
       auto header = cells_as_texts(row);
-      time = table::find_column(header, shape.time_column);
+      time = table::find_time_in_header(header, shape);
       if (time) first = std::move(header);
       continue;
     }

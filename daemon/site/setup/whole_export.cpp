@@ -140,7 +140,8 @@ bool take_resting_registers(SurveyedExport& survey, const WholeFile& whole) {
   for (std::size_t i = 0; i < survey.meters.size(); ++i) {
     SurveyedMeter& meter = survey.meters[i];
     const MeterWatch& watch = whole.watches[i];
-    if (meter.is_register || watch.is_rate || !watch.as_register.may_rest()) continue;
+    if (meter.is_register || meter.is_told_kind || watch.is_rate) continue;
+    if (!watch.as_register.may_rest()) continue;
     const auto sibling = std::ranges::find_if(survey.meters, [&](const SurveyedMeter& other) {
       return other.is_register && other.as_register.is_register &&
              other.as_register.resets == metering::Resets::never &&
@@ -160,8 +161,9 @@ bool take_registers_of_others(SurveyedExport& survey, const SurveyHints& hints) 
   bool is_new = false;
   for (SurveyedMeter& meter : survey.meters) {
     const auto known = hints.registers.find({meter.name_in_file, meter.column});
-    if (known == hints.registers.end() || meter.is_told_register) continue;
-    meter.is_register = meter.is_told_register = is_new = true;
+    if (known == hints.registers.end() || meter.is_told_kind) continue;
+    meter.is_register = known->second.is_register;
+    meter.is_told_kind = is_new = true;
     meter.as_register = known->second;
     meter.as_register.exchanges.clear();
   }
@@ -186,7 +188,7 @@ bool learn_from_rows(SurveyedExport& survey, const metering::LocalCalendar& cale
     if (was_read && csv::is_interval(longest)) {
       meter.interval = longest;
       is_new = true;
-    } else if (!whole.watches[i].is_rate && !meter.as_register.is_register) {
+    } else if (!whole.watches[i].is_rate && !meter.as_register.is_register && !meter.is_told_kind) {
       meter.as_register = whole.watches[i].as_register.verdict(calendar);
       meter.is_register = meter.is_register || meter.as_register.is_register;
       is_new = is_new || meter.as_register.is_register;

@@ -243,7 +243,7 @@ TEST_P(Steps, GapsAreNoChange) {
   }
 }
 
-// Seconds beside the grid, constant, drifting or at random: a tenth of the interval is put on it if
+// Seconds beside the grid, constant, drifting or at random: a fifth of the interval is put on it if
 // it is allowed or looked for; else each row is refused and names the key.
 TEST_P(Steps, StampsBesideTheGridArePutOnIt) {
   for (unsigned seed = 1; seed <= 12; ++seed) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -121,6 +122,34 @@ TEST(EndsAtChange, EachIntervalIsWhereItBegan) {
           }
         }
       }
+    }
+  }
+}
+
+// Tables of 24 hours a day have the hour that the clock skips as well, blank or zero.
+TEST(EndsAtChange, AnHourThatIsSkippedMayBeWritten) {
+  const Change& change = kChanges.front();
+  for (const int step : {15, 30, 60}) {
+    for (const char* empty : {"", "0", "0.000"}) {
+      SCOPED_TRACE(std::string{empty} + " every " + std::to_string(step));
+      Export made = export_of(change, minutes{step}, Written::by_begin, Layout::columns);
+      std::string hour;
+      for (int past = step; past <= 60; past += step) {
+        const Instant end = instant("2024-03-31T02:00:00Z") + minutes{past};
+        hour += local_text(end) + ";" + empty + ";" + empty + "\n";
+      }
+      const std::size_t behind = made.text.find("2024-03-31 03:");
+      const std::size_t four = made.text.find("2024-03-31 04:");
+      made.text.insert(std::min(behind, four), hour);
+      const ReadText read_back = read(made, change, minutes{step}, Layout::columns);
+      ASSERT_TRUE(read_back.report) << read_back.report.error().message;
+      std::size_t values = 0;
+      for (const metering::Reading& reading : read_back.readings) {
+        if (std::isnan(reading.mean_kW)) continue;
+        ++values;
+        EXPECT_EQ(reading.start, made.begins[static_cast<std::size_t>(reading.mean_kW)]);
+      }
+      EXPECT_EQ(values, 2 * made.begins.size());
     }
   }
 }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "core/random/rng.hpp"
 #include "month_builder.hpp"
 
 namespace recald::metering::gap_fill_test {
@@ -145,6 +148,38 @@ TEST(GapFill, ALongGapIsLessCertainThanScatteredOnes) {
   const FillResult b = fill_gaps(block, {});
   EXPECT_EQ(a.filled, b.filled);
   EXPECT_GT(b.variance_kWh2, 2.0 * a.variance_kWh2);
+}
+
+// Gaps of an hour to most of a day in loads whose deviations last for hours: what a fill is off by
+// is what it says, over many of them.
+TEST(GapFill, TheVarianceIsThatOfTheErrors) {
+  Rng rng{21};
+  double squared = 0.0;
+  int far = 0;
+  constexpr int kDraws = 400;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const int length = 1 + static_cast<int>(rng.below(20));
+    const int begin = 24 * 3 + static_cast<int>(rng.below(24 * 24));
+    double deviation = 0.0;
+    double missing_kWh = 0.0;
+    MonthSlots slots = month_reading("UTC", month(2015, 9), kHour, [&](int slot) {
+      deviation = 0.9 * deviation + rng.uniform(-1.0, 1.0);  // lasts for some ten hours
+      const double load_kW = 20.0 + (slot % 24 > 7 ? 10.0 : 0.0) + deviation;
+      if (slot < begin || slot >= begin + length) return load_kW;
+      missing_kWh += load_kW;
+      return kBlank;
+    });
+    const FillResult result = fill_gaps(slots, {});
+    double filled_kWh = 0.0;
+    for (int slot = begin; slot < begin + length; ++slot) {
+      filled_kWh += slots.used_kW[static_cast<std::size_t>(slot)];
+    }
+    const double score = (filled_kWh - missing_kWh) / std::sqrt(result.variance_kWh2);
+    squared += score * score;
+    if (std::abs(score) > 2.0) ++far;
+  }
+  EXPECT_NEAR(std::sqrt(squared / kDraws), 0.9, 0.2);  // fully correlated is a little too much
+  EXPECT_LT(far, kDraws / 15);
 }
 
 TEST(GapFill, SuspectSlotsKeepTheirValueBesideTheEstimate) {
