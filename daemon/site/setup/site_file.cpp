@@ -351,6 +351,9 @@ void add_guesses(const PlacedMeter& placed, const std::string& id, SiteDraft& dr
   const auto add = [&](std::string sentence) { draft.guesses.push_back(std::move(sentence)); };
   if (is_guess(meter.utility.because)) {
     add(fmt::format("{}: taken for {}.", id, metering::to_string(meter.utility.value)));
+  } else if (meter.utility.because.find(", though") != std::string::npos) {
+    add(fmt::format("{}: taken for {}, {}.", id, metering::to_string(meter.utility.value),
+                    meter.utility.because));
   }
   if (is_guess(meter.unit.because)) add(fmt::format("{}: taken to be in kWh.", id));
   if (is_guess(meter.stamps.because)) {

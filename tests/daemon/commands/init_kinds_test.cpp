@@ -159,6 +159,38 @@ TEST_F(InitKinds, AShortFileHasTheRegistersOfTheLongOnes) {
   }
 }
 
+// A day in which a load only rises is no register, if the other files are none.
+TEST_F(InitKinds, AShortFileOfAmountsIsNoRegister) {
+  write({.name = "a.csv", .first = "2024-04-01", .last = "2024-05-31"});
+  double value_kWh = 3.0;
+  write({.name = "b.csv", .first = "2024-06-01", .last = "2024-06-01"},
+        [&](Instant, double) { return with_point(value_kWh += 0.25); });
+  const Outcome alone = init({"b.csv"});
+  EXPECT_THAT(site(), HasSubstr("counter = { unit = \"kWh\" }")) << alone.err;
+  const Outcome both = init({"a.csv", "b.csv"});
+  ASSERT_EQ(both.exit_code, kSuccess) << both.err;
+  EXPECT_EQ(meters(site()), 1U) << site();
+  EXPECT_THAT(site(), Not(HasSubstr("counter")));
+}
+
+// Mean, energy and share measured are those of all files.
+TEST_F(InitKinds, TheTableCountsAllFilesOfAMeter) {
+  for (const char* name : {"a.csv", "b.csv"}) {
+    const bool is_second = name[0] == 'b';
+    write({.name = name,
+           .first = is_second ? "2024-02-01" : "2024-01-01",
+           .last = is_second ? "2024-02-29" : "2024-01-31"},
+          [&](Instant start, double) {
+            const auto minute = start.time_since_epoch() / minutes{1};
+            return with_point((is_second ? 30.0 : 10.0) + 0.01 * static_cast<double>(minute % 7));
+          });
+  }
+  const Outcome both = init({"a.csv", "b.csv"});
+  ASSERT_EQ(both.exit_code, kSuccess) << both.err;
+  // (31 · 10 + 29 · 30) / 60 and the hundredths.
+  EXPECT_THAT(both.out, AllOf(HasSubstr(" 19.7 "), HasSubstr("100.0 %"), HasSubstr("2024-02-29")));
+}
+
 // Of the days at the seam all were corrected later.
 TEST_F(InitKinds, ASeamThatWasCorrectedJoins) {
   write({.name = "a.csv", .first = "2024-01-01", .last = "2024-02-02"});
@@ -191,6 +223,18 @@ TEST_F(InitKinds, MetersThatAreCalledAlikeHaveTheirFilesNames) {
   ASSERT_EQ(both.exit_code, kSuccess) << both.err;
   EXPECT_THAT(site(), AllOf(HasSubstr("id = \"gas\""), HasSubstr("id = \"lifts\""),
                             HasSubstr("utility = \"gas\""), HasSubstr("by its file's name")));
+}
+
+TEST_F(InitKinds, AFileAndItsColumnMayNameTwoUtilities) {
+  write({.name = "Fernwaerme.csv",
+         .first = "2024-01-01",
+         .last = "2024-01-31",
+         .header = "Zeit,Stromverbrauch (kWh)"});
+  const Outcome one = init({"Fernwaerme.csv"});
+  ASSERT_EQ(one.exit_code, kSuccess) << one.err;
+  EXPECT_THAT(site(), HasSubstr("utility = \"electricity\""));
+  EXPECT_THAT(one.out, HasSubstr("taken for electricity, by its name, though its file's name says "
+                                 "heating"));
 }
 
 // Two values of each time, and nothing that says of what.
