@@ -222,6 +222,10 @@ Result<ClockLabels> read_clock_labels(RowSource& rows, const TableShape& shape,
   if (rows.error()) return tl::unexpected(*rows.error());
   ClockLabels decided = labelled.decide(calendar, without_change);
   if (decided.format) return decided;
+  // Times that end at 24:00 on days of any length are a clock's; an hour may have been added up.
+  if (without_change == ClockFormat::time) {
+    return ClockLabels{ClockFormat::time, "its days end at 24:00, however long they are"};
+  }
   return failure(ErrorCode::malformed,
                  "column " + csv::in_quotes(shape.clock_column) +
                      " counts hours or intervals, but " + decided.because + " in " +

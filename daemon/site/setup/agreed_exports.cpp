@@ -170,7 +170,7 @@ void agree_on_stamps(std::span<SurveyedExport> exports, const Kind& kind) {
       weights[meter.stamps.value == csv::Stamps::end ? 1 : 0] += meter.stamps_weight;
     }
   }
-  if (weights[0] == weights[1]) return;
+  if (weights[0] + weights[1] == 0) return;
   const csv::Stamps agreed = weights[1] > weights[0] ? csv::Stamps::end : csv::Stamps::start;
   for (const std::size_t i : kind) {
     for (const SurveyedMeter& meter : exports[i].meters) {
@@ -180,7 +180,8 @@ void agree_on_stamps(std::span<SurveyedExport> exports, const Kind& kind) {
       }
     }
   }
-  const Guess<csv::Stamps> stamps = strongest->stamps;
+  Guess<csv::Stamps> stamps = strongest->stamps;
+  if (weights[0] == weights[1]) stamps.because = "guessed; its files contradict each other";
   for (const std::size_t i : kind) {
     for (SurveyedMeter& meter : exports[i].meters) {
       if (!is_of_rows(meter) || meter.stamps_weight == kCertainStamps) continue;

@@ -325,8 +325,8 @@ void guess_by_file_name(SurveyedExport& survey) {
   if (meter.utility.because.starts_with("guessed")) {
     meter.utility = {by_file.utility, "by its file's name"};
   } else if (meter.utility.value != by_file.utility) {
-    meter.utility.because += fmt::format(", though its file's name says {}",
-                                         metering::to_string(by_file.utility));
+    meter.utility.because +=
+        fmt::format(", though its file's name says {}", metering::to_string(by_file.utility));
   }
 }
 

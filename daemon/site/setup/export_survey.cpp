@@ -227,7 +227,12 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     // A clock of its own, or the building's, may show days from midnight to midnight.
     StampsGuess stamps = guess_stamps(survey, meter.span, meter.interval, own_clock);
     const auto by_site = guess_stamps(survey, meter.span, meter.interval, calendar);
-    if (by_site.weight > stamps.weight) stamps = by_site;
+    if (by_site.weight > stamps.weight) {
+      stamps = by_site;
+    } else if (by_site.weight == stamps.weight && by_site.stamps.value != stamps.stamps.value) {
+      stamps.weight = 0;
+      stamps.stamps.because = "guessed by the days of its own clock; the building's say otherwise";
+    }
     meter.stamps = stamps.stamps;
     meter.stamps_weight = stamps.weight;
     if (meter.stamps.value == csv::Stamps::end) {

@@ -357,7 +357,8 @@ void add_guesses(const PlacedMeter& placed, const std::string& id, SiteDraft& dr
   }
   if (is_guess(meter.unit.because)) add(fmt::format("{}: taken to be in kWh.", id));
   if (is_guess(meter.stamps.because)) {
-    add(fmt::format("{}: stamps are taken for the starts of intervals.", id));
+    add(fmt::format("{}: stamps are taken for the {} of intervals.", id,
+                    meter.stamps.value == csv::Stamps::end ? "ends" : "starts"));
   }
   if (meter.is_register) {
     const metering::Resets resets = meter.as_register.resets;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 
 #include "../command_line.hpp"
@@ -171,6 +172,37 @@ TEST_F(InitKinds, AShortFileOfAmountsIsNoRegister) {
   ASSERT_EQ(both.exit_code, kSuccess) << both.err;
   EXPECT_EQ(meters(site()), 1U) << site();
   EXPECT_THAT(site(), Not(HasSubstr("counter")));
+}
+
+// Ends of intervals in UTC: in summer they begin and end at the midnights of UTC as starts would;
+// the months of winter, when the building's clock shows UTC, settle it.
+TEST_F(InitKinds, EndsInUtcAreSettledByTheMonthsOfWinter) {
+  const LocalCalendar lisbon = LocalCalendar::open("Europe/Lisbon").value();
+  for (const bool are_ends : {true, false}) {
+    SCOPED_TRACE(are_ends);
+    const std::vector<std::array<const char*, 3>> months{{"a.csv", "2024-08-01", "2024-08-31"},
+                                                         {"b.csv", "2024-09-01", "2024-09-30"},
+                                                         {"c.csv", "2024-11-01", "2024-11-30"}};
+    for (const auto& [name, first, last] : months) {
+      const auto truth = made_up_use(lisbon, {day(first), day(last), minutes{60}}, 1, 40.0);
+      std::string text = "Time (UTC),Load (kWh)\n";
+      for (const auto& [start, value] : truth.intervals) {
+        const Instant shown = start + (are_ends ? minutes{60} : minutes{0});
+        std::string stamp = metering::to_string(shown).substr(0, 16);
+        stamp[10] = ' ';
+        text += stamp + "," + with_point(value) + "\n";
+      }
+      write_text(folder_ / name, text);
+    }
+    std::filesystem::remove_all(folder_ / "site");
+    std::vector<std::string> words{"init", "--timezone", "Europe/Lisbon", "--out",
+                                   (folder_ / "site").string()};
+    for (const char* name : {"a.csv", "b.csv", "c.csv"}) words.push_back((folder_ / name).string());
+    const Outcome all = run(words);
+    ASSERT_EQ(all.exit_code, kSuccess) << all.err;
+    EXPECT_THAT(site(), HasSubstr(are_ends ? "stamps = \"end\"" : "stamps = \"start\""));
+    EXPECT_THAT(site(), Not(HasSubstr(are_ends ? "stamps = \"start\"" : "stamps = \"end\"")));
+  }
 }
 
 // Mean, energy and share measured are those of all files.
