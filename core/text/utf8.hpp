@@ -13,8 +13,8 @@ namespace recald {
 /// @pre `point` is at most U+10FFFF.
 void append_utf8(std::string& out, std::uint32_t point);
 
-/// Text that is not UTF-8 is taken for Windows' Latin-1, in which older programs write "m³", "°C"
-/// and dashes.
+/// Text that is not UTF-8 is taken for Windows-1252, in which older programs write "m³", "°C" and
+/// dashes, or, if its words need it, for Windows-1250 of Central Europe.
 [[nodiscard]] std::string utf8_of(std::string_view text);
 
 }  // namespace recald

@@ -2,6 +2,7 @@
 import dataclasses
 import datetime
 import io
+import re
 import zipfile
 from xml.sax.saxutils import escape
 
@@ -87,7 +88,7 @@ def sheet_xml(rows):
                 out.append(f'<c r="{where}"><v>{cell.value:.{cell.decimals}f}</v></c>')
             elif isinstance(cell, Moment):
                 since = cell.wall - datetime.datetime(1899, 12, 30)
-                if "%H" not in cell.format and "%I" not in cell.format:
+                if not re.search("%-?[HI]", cell.format):
                     out.append(f'<c r="{where}" s="2"><v>{since.days}</v></c>')
                 else:
                     out.append(f'<c r="{where}" s="1"><v>{since.days + since.seconds / 86400:.10f}</v></c>')
