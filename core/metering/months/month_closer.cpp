@@ -141,11 +141,23 @@ void MonthCloser::put(MeterState& state, Record& record, std::size_t slot,
   MonthSlots& month = record.slots;
   const Received now = received(reading);
   const bool had_value = !std::isnan(month.measured_kW[slot]);
-  if (had_value && (std::isnan(now.value_kW) || now.value_kW == month.measured_kW[slot])) {
+  // What was measured takes the place of its source's own estimate, such as the share of a day.
+  const auto is_estimate = [](Validity validity, Reason reasons) {
+    return validity == Validity::scaled && has(reasons, Reason::estimated);
+  };
+  const bool had_estimate = had_value && is_estimate(month.validity[slot], month.reasons[slot]);
+  const bool brings_estimate = is_estimate(now.validity, reading.reasons);
+  const bool is_same = std::isnan(now.value_kW) || now.value_kW == month.measured_kW[slot];
+  if (had_value && (is_same || (brings_estimate && !had_estimate))) {
     ++state.counts.duplicates;
     return;
   }
-  if (had_value) {
+  if (had_estimate && !brings_estimate && now.validity == Validity::ok) {
+    ++state.counts.accepted;
+    month.measured_kW[slot] = now.value_kW;
+    month.validity[slot] = now.validity;
+    month.reasons[slot] = reading.reasons;
+  } else if (had_value) {
     ++state.counts.conflicts;
     month.validity[slot] = Validity::suspect;
     month.reasons[slot] |= Reason::mismatch;

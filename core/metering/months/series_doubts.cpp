@@ -26,6 +26,17 @@ double mean_of(const MonthSlots& month, int from, int to) {
   return count > 0 ? sum / count : kAbsent;
 }
 
+/// The highest measured slot outside of [from, to); NaN: none.
+double highest_beside(const MonthSlots& month, int from, int to) {
+  double highest_kW = kAbsent;
+  for (int slot = 0; slot < month.slots(); ++slot) {
+    const double value_kW = month.measured_kW[static_cast<std::size_t>(slot)];
+    const bool is_beside = slot < from || slot >= to;
+    if (is_beside && !(value_kW <= highest_kW) && !std::isnan(value_kW)) highest_kW = value_kW;
+  }
+  return highest_kW;
+}
+
 /// The first slot of the hour that a clock change repeats, on its day; nothing on other days.
 std::optional<int> repeated_hour(const MonthGrid& grid, int begin, int end) {
   for (int slot = begin + 1; slot < end; ++slot) {
@@ -133,7 +144,11 @@ std::optional<SeriesDoubts::SummedHour> SeriesDoubts::summed_hour(const MonthSlo
     const double ratio = sum_kW / per_hour / beside;
     constexpr double kSummedMin = 1.6;
     constexpr double kSummedMax = 2.4;
-    if (!stands_once || !(ratio > kSummedMin && ratio < kSummedMax)) continue;
+    constexpr double kFarAbove = 1.2;  // any other of the month, however the load moves around it
+    const bool is_double = ratio > kSummedMin && ratio < kSummedMax;
+    const bool is_highest =
+        sum_kW / per_hour > kFarAbove * highest_beside(month, begin, second + per_hour);
+    if (!stands_once || !(is_double || is_highest)) continue;
     return SummedHour{{month.grid->start(begin), month.grid->start(second + per_hour)}, ratio};
   }
   return {};

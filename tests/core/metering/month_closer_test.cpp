@@ -148,6 +148,30 @@ TEST(MonthCloser, ALateReadingReopensItsMonthWithANewRevision) {
   EXPECT_EQ(pipeline.closed.size(), 2u);
 }
 
+// A source's estimate gives way to what was measured, whichever comes first; two measured values
+// contradict each other.
+TEST(MonthCloser, MeasuredValuesReplaceEstimates) {
+  const Instant at = utc(2016, 3, 10, 2);
+  const Reading estimate{
+      .start = at, .mean_kW = 33.0, .validity = Validity::scaled, .reasons = Reason::estimated};
+  const Reading measured{.start = at, .mean_kW = 44.0};
+  for (const bool is_first : {true, false}) {
+    Pipeline pipeline;
+    pipeline.feed(utc(2016, 3, 1, 6), at);
+    pipeline.closer.add(is_first ? estimate : measured);
+    pipeline.closer.add(is_first ? measured : estimate);
+    pipeline.feed(at + kHour, utc(2016, 4, 1, 5));
+    pipeline.closer.finish();
+    const MonthSlots& slots = pipeline.closed.at(0).slots;
+    const auto slot = static_cast<std::size_t>(slots.grid->slot_at(at).value());
+    EXPECT_EQ(slots.used_kW[slot], 44.0);
+    EXPECT_EQ(slots.validity[slot], Validity::ok);
+    EXPECT_EQ(slots.reasons[slot], Reason::none);
+    EXPECT_EQ(pipeline.closer.counts(0).conflicts, 0);
+    EXPECT_EQ(pipeline.closed.at(0).figure.coverage, 1.0);
+  }
+}
+
 TEST(MonthCloser, WhatIsNoLongerKeptIsCountedNotLost) {
   Pipeline pipeline;
   pipeline.feed(utc(2016, 1, 1, 6), utc(2016, 5, 20));

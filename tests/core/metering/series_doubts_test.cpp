@@ -123,6 +123,27 @@ TEST(SeriesDoubts, ABuildingIsNoUnit) {
   }
 }
 
+// Where a load comes to rest around that hour, its neighbours say little, but a peak says enough.
+TEST(SeriesDoubts, APeakInTheHourThatStandsOnceIsTold) {
+  Rng rng{9};
+  for (const double factor : {2.0, 0.5}) {
+    MonthSlots once = month_reading(
+        "Europe/Berlin", month(2025, 10), std::chrono::hours{1},
+        [&](int slot) { return slot % 24 < 2 ? 60.0 * rng.uniform(0.95, 1.05) : 0.0; });
+    const std::size_t first = 25 * 24 + 2;
+    once.measured_kW[first] = factor * 60.0;
+    once.measured_kW[first + 1] = kBlank;
+    once.validity[first + 1] = Validity::missing;
+    const auto found = findings_of({once});
+    if (factor > 1.0) {
+      EXPECT_THAT(found,
+                  ElementsAre(Field(&DataFinding::sentence, HasSubstr("both hours added up"))));
+    } else {
+      EXPECT_THAT(found, IsEmpty());
+    }
+  }
+}
+
 // A meter both ways draws and feeds in: the mean of its days may be of any size and sign.
 TEST(SeriesDoubts, WhatTheSunLeavesIsNoUnit) {
   Rng rng{8};
