@@ -356,8 +356,8 @@ TEST(ReadingsCsvBadInput, UnsortedAndDuplicateRowsAreReportedAndHandedOn) {
 }
 
 TEST(ReadingsCsvBadInput, OffGridStampsAreKeptOut) {
-  EXPECT_EQ(issue(kHead + kThreeRows + "2016-03-01T00:47:00Z,main,1,kW\n"),
-            "5: meter 'main': 2016-03-01T00:47:00Z is no start of an interval of 15 minutes");
+  EXPECT_EQ(issue(kHead + kThreeRows + "2016-03-01T00:49:00Z,main,1,kW\n"),
+            "5: meter 'main': 2016-03-01T00:49:00Z is no start of an interval of 15 minutes");
 }
 
 // A logger whose clock is seven minutes off has no grid of its own: nothing is moved silently.
