@@ -517,10 +517,11 @@ TEST_F(Cli, ReplayWritesMonths) {
   const Outcome outcome = run({"replay", site(), "--out", path("made/below")});
   EXPECT_EQ(outcome.exit_code, kSuccess);
   const std::string months = read_text(folder_ / "made/below/months.csv");
-  EXPECT_THAT(months, StartsWith("month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,"
-                                 "method,usable,different,revision,tzdata,estimated_share,value_sd\n"
-                                 "2021-01,electricity,1200,kWh/day,1.000000,0.000000,60,"
-                                 "2021-01-01T00:00:00Z,block-"));
+  EXPECT_THAT(months,
+              StartsWith("month,meter,value,unit,coverage,filled_share,peak_kW,peak_at,"
+                         "method,usable,different,revision,tzdata,estimated_share,value_sd\n"
+                         "2021-01,electricity,1200,kWh/day,1.000000,0.000000,60,"
+                         "2021-01-01T00:00:00Z,block-"));
   EXPECT_EQ(lines_in(months), 1 + 6);
   EXPECT_THAT(months, HasSubstr("2021-03,district_heat,"));
 }
