@@ -242,7 +242,7 @@ Result<std::unique_ptr<Link>> Link::make(const Broker& broker, const Session& se
                                link->name_, mosquitto_strerror(code)));
   }
   if (broker.is_tls) {
-    auto context = TRY(make_tls_context(broker));
+    auto context = TRY(make_tls_context(broker, link->certificate_fault_));
     mosquitto_int_option(client, MOSQ_OPT_SSL_CTX_WITH_DEFAULTS, 0);
     mosquitto_void_option(client, MOSQ_OPT_SSL_CTX, context.get());  // shares it
   }
@@ -259,6 +259,7 @@ Result<void> Link::connect() {
   Properties properties;
   if (session_.is_kept) properties.add(MQTT_PROP_SESSION_EXPIRY_INTERVAL, kSession_s);
   properties.add(MQTT_PROP_MAXIMUM_PACKET_SIZE, kPacket_bytes_max);
+  certificate_fault_ = X509_V_OK;
   const int code = mosquitto_connect_bind_v5(client_, broker_.host.c_str(), broker_.port,
                                              kKeepAlive_s, nullptr, properties.list());
   const int system_error = errno;
@@ -305,11 +306,10 @@ Result<void> Link::step(int wake, milliseconds time_max) {
 
 tl::unexpected<Error> Link::lost(int code, int system_error) const {
   if (!why_.empty()) return failure(ErrorCode::io_failed, why_);
-  auto* const tls = static_cast<SSL*>(mosquitto_ssl_get(client_));
-  if (tls != nullptr && SSL_get_verify_result(tls) != X509_V_OK) {
+  if (certificate_fault_ != X509_V_OK) {
     return failure(ErrorCode::io_failed,
                    fmt::format("{} is not trusted: its certificate has this fault: {}", name_,
-                               X509_verify_cert_error_string(SSL_get_verify_result(tls))));
+                               X509_verify_cert_error_string(certificate_fault_)));
   }
   const std::string_view logged = last_words(logged_);
   const bool is_closed = code == MOSQ_ERR_CONN_LOST || logged == "unexpected eof while reading" ||

@@ -80,6 +80,7 @@ class Link {
   std::size_t unacknowledged_max_ = 0;
   std::uint32_t packet_bytes_max_ = 0;  ///< 0: no limit.
   std::string why_;                     ///< What the broker said when it ended the connection.
+  long certificate_fault_ = 0;          ///< X509_V_OK, or why the broker is not trusted.
   std::string logged_;                  ///< The library's last error, for what only it knows.
 };
 

@@ -33,16 +33,25 @@ bool demand_host(SSL_CTX* context, const std::string& host) {
          X509_VERIFY_PARAM_set1_host(demands, host.c_str(), host.size()) == 1;
 }
 
+int keep_fault(int is_good, X509_STORE_CTX* store) {
+  if (is_good == 1) return is_good;
+  const void* const tls = X509_STORE_CTX_get_ex_data(store, SSL_get_ex_data_X509_STORE_CTX_idx());
+  SSL_CTX* const context = SSL_get_SSL_CTX(static_cast<const SSL*>(tls));
+  *static_cast<long*>(SSL_CTX_get_app_data(context)) = X509_STORE_CTX_get_error(store);
+  return is_good;
+}
+
 }  // namespace
 
-Result<TlsContext> make_tls_context(const Broker& broker) {
+Result<TlsContext> make_tls_context(const Broker& broker, long& fault) {
   ERR_clear_error();
   TlsContext context{SSL_CTX_new(TLS_client_method())};
   if (!context || SSL_CTX_set_min_proto_version(context.get(), TLS1_2_VERSION) != 1 ||
       !demand_host(context.get(), broker.host)) {
     return failure(ErrorCode::io_failed, "TLS cannot be set up: " + openssl_reason());
   }
-  SSL_CTX_set_verify(context.get(), SSL_VERIFY_PEER, nullptr);
+  SSL_CTX_set_app_data(context.get(), &fault);
+  SSL_CTX_set_verify(context.get(), SSL_VERIFY_PEER, keep_fault);
   SSL_CTX_set_default_passwd_cb(context.get(), no_passphrase);
   if (broker.trusted_certificate.empty()) {
     SSL_CTX_set_default_verify_paths(context.get());

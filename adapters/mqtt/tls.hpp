@@ -16,7 +16,9 @@ struct FreeTlsContext {
 using TlsContext = std::unique_ptr<SSL_CTX, FreeTlsContext>;
 
 /// TLS 1.2 or later; the broker's certificate must be trusted and be for its host.
+/// @param fault  Receives why it is not, an X509_V_ERR; outlives the context's connections, whose
+///               own results are gone when the library closes them.
 /// @return or io_failed: a certificate or key that cannot be read, or that do not belong together.
-[[nodiscard]] Result<TlsContext> make_tls_context(const Broker& broker);
+[[nodiscard]] Result<TlsContext> make_tls_context(const Broker& broker, long& fault);
 
 }  // namespace recald::mqtt

@@ -72,11 +72,14 @@ constexpr double kMean_kW_max = 100'000.0;
 std::string implausible(const SurveyedExport& survey) {
   for (const SurveyedMeter& meter : survey.meters) {
     if (std::abs(meter.mean_kW) <= kMean_kW_max) continue;
+    const bool is_sign_open = survey.table && !survey.table->decimal_because.starts_with("as ");
     return fmt::format(
         "'{}': {} would use {:.0f} MW in the mean, which no building does; its unit is taken for "
-        "{} ({}). Give --unit, or name the columns that are meters with --column",
+        "{} ({}){}. Give {}--unit, or name the columns that are meters with --column",
         survey.files.front().string(), csv::in_quotes(meter.name), 1e-3 * meter.mean_kW,
-        meter.unit.value, meter.unit.because);
+        meter.unit.value, meter.unit.because,
+        is_sign_open ? fmt::format(", its decimal sign for '{}'", survey.table->shape.decimal) : "",
+        is_sign_open ? "--decimal, " : "");
   }
   return {};
 }

@@ -230,8 +230,10 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     if (by_site.weight > stamps.weight) {
       stamps = by_site;
     } else if (by_site.weight == stamps.weight && by_site.stamps.value != stamps.stamps.value) {
-      stamps.weight = 0;
-      stamps.stamps.because = "guessed by the days of its own clock; the building's say otherwise";
+      // People download days of the building's calendar, whatever the stamps are in.
+      stamps = {{by_site.stamps.value,
+                 "guessed by the days of the building's clock; those of its own say otherwise"},
+                0};
     }
     meter.stamps = stamps.stamps;
     meter.stamps_weight = stamps.weight;
