@@ -312,7 +312,9 @@ class PlainTable:
         style = "(" if self.unit_way == "header" else "none"
         files = {}
         for meter in self.meters:
-            header = lines + [self.stamps.titles + [title_of(title, meter.unit, style)]]
+            # "Sähkönkulutus" is of electricity; the first word of each language is of anything.
+            name = title if meter.utility == "electricity" else self.words[self.quantity][0]
+            header = lines + [self.stamps.titles + [title_of(name, meter.unit, style)]]
             rows = [row for _, row in self.wide_rows([meter], [])]
             files[meter.label.replace(" ", "_") + ".csv"] = delimited(header + rows, self.habits)
         return files
