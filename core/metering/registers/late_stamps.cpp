@@ -13,7 +13,7 @@ constexpr int kToleranceShare = 5;     // of an interval stamps may lie beside i
 constexpr double kSameShare = 0.005;   // of an interval: a spread that moves no peak
 constexpr std::ptrdiff_t kAround = 4;  // samples to each side, by which the load is known
 constexpr double kSudden = 0.5;        // a load that differs by more from that around it
-constexpr double kStandardErrors = 2.0;
+constexpr double kErrorsApart = 2.0;
 
 /// From the nearest start of an interval; late is positive.
 seconds beside(Instant time, seconds interval) {
@@ -89,8 +89,8 @@ StampsBeside judge_stamps(std::span<const RegisterSample> samples, seconds inter
                more);
   }
   const double above = slope.errors_above_half();
-  if (above > kStandardErrors) return StampsBeside::as_read;
-  return above < -kStandardErrors ? StampsBeside::as_grid : StampsBeside::unclear;
+  if (above > kErrorsApart) return StampsBeside::as_read;
+  return above < -kErrorsApart ? StampsBeside::as_grid : StampsBeside::unclear;
 }
 
 void put_on_grid(std::vector<RegisterSample>& samples, seconds interval) {
