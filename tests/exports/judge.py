@@ -197,7 +197,7 @@ def is_told(problem, traits, warnings):
         words = [r"utility|taken for"]
     elif problem.endswith(OTHER_CLOCK):
         words = [r"\bclock\b|time ?zone|stamps are taken"]
-    elif ": peak " in problem and re.search("than the peak", about):
+    elif ": peak " in problem and re.search("than the peak|peak may be", about):
         return True
     else:
         words = [r"taken to be in|\bunit\b"] + [WARNINGS[trait] for trait in traits if trait in WARNINGS]

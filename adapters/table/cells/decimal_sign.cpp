@@ -1,6 +1,7 @@
 #include "adapters/table/cells/decimal_sign.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "adapters/csv/fields.hpp"
 #include "adapters/table/cells/cell_number.hpp"
@@ -29,7 +30,7 @@ struct SignsFound {
   Signs commas;
   Signs open_points;  // 1.234 may be about a thousand, or about one
   Signs open_commas;
-  std::size_t plain = 0;
+  std::size_t plain = 0;  ///< Without a sign, in columns where others have one.
 
   [[nodiscard]] bool decides() const { return points.count != commas.count; }
   [[nodiscard]] bool is_open() const { return open_points.count + open_commas.count > 0; }
@@ -37,20 +38,28 @@ struct SignsFound {
 
 SignsFound signs_in(std::span<const KeptRow* const> rows, std::span<const std::size_t> columns) {
   SignsFound found;
+  std::vector<std::size_t> plain(columns.size());
+  std::vector<bool> has_sign(columns.size());
   for (const KeptRow* row : rows) {
-    for (const std::size_t column : columns) {
-      const std::string_view cell = split_number(cell_of(*row, column)).number;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::string_view cell = split_number(cell_of(*row, columns[i])).number;
       const DecimalSigns signs = possible_decimal_signs(cell);
       if (!signs.point && !signs.comma) continue;
       const bool has_comma = cell.find(',') != std::string_view::npos;
       if (!has_comma && cell.find('.') == std::string_view::npos) {
-        ++found.plain;
-      } else if (signs.point == signs.comma) {
+        ++plain[i];
+        continue;
+      }
+      has_sign[i] = true;
+      if (signs.point == signs.comma) {
         (has_comma ? found.open_commas : found.open_points).add(*row, cell);
       } else {
         (signs.point ? found.points : found.commas).add(*row, cell);
       }
     }
+  }
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (has_sign[i]) found.plain += plain[i];
   }
   return found;
 }

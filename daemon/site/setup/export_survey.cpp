@@ -229,8 +229,10 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     const auto by_site = guess_stamps(survey, meter.span, meter.interval, calendar);
     if (by_site.weight > stamps.weight) {
       stamps = by_site;
-    } else if (by_site.weight == stamps.weight && by_site.stamps.value != stamps.stamps.value) {
-      // People download days of the building's calendar, whatever the stamps are in.
+    } else if (own_clock.zone_name() == "Etc/UTC" && by_site.weight == stamps.weight &&
+               by_site.stamps.value != stamps.stamps.value) {
+      // Nobody lives by UTC: people download days of the building's calendar. A logger that stays
+      // on winter time has its own.
       stamps = {{by_site.stamps.value,
                  "guessed by the days of the building's clock; those of its own say otherwise"},
                 0};

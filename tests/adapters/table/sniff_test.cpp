@@ -313,6 +313,24 @@ TEST(Sniff, TwoRowsOfNamesAreJoined) {
   EXPECT_EQ(named.values[1].name, "B Energy");
 }
 
+// Whole numbers of one meter say nothing of another's three digits.
+TEST(Sniff, TheDecimalSignIsThatOfItsOwnColumn) {
+  for (const char sign : {'.', ','}) {
+    const auto cells = [&](bool has_small) {
+      return half_hours({"time", "Main (Wh)", "Gas (m³)"}, 3,
+                        [&](int i, const std::string& date, const std::string& time) {
+                          const std::string value =
+                              std::string{"2"} + sign + std::to_string(100 + 37 * i % 900);
+                          return std::vector<std::string>{
+                              date + " " + time, std::to_string(1916 + i % 50),
+                              has_small && i % 3 == 0 ? std::to_string(300 + i) : value};
+                        });
+    };
+    EXPECT_EQ(guess(cells(false)).shape.decimal, sign);
+    EXPECT_EQ(guess(cells(true)).shape.decimal, sign == '.' ? ',' : '.');
+  }
+}
+
 TEST(Sniff, ATimeWithoutAHeaderIsFound) {
   const TableGuess one = guess(
       half_hours({"", "main_kWh"}, 2, [](int i, const std::string& date, const std::string& time) {
