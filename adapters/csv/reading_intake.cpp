@@ -13,6 +13,7 @@ namespace recald::csv {
 namespace {
 
 using metering::Instant;
+using metering::kToleranceShare;
 using metering::Reading;
 using std::chrono::seconds;
 
@@ -29,7 +30,6 @@ constexpr seconds kOffsetGrid{900};      // the offsets of all zones since 1971 
 constexpr seconds kRegisterInterval{900};  // of registers that are logged now and then
 constexpr seconds kSpreadMax{86'400};      // values of days are spread
 constexpr seconds kClockChange{3600};
-constexpr int kToleranceShare = 5;  // of an interval stamps may lie beside its start
 
 Instant stamp_of(const WaitingRow& waiting) { return waiting.row.stamp; }
 

@@ -219,7 +219,6 @@ class TableReader {
     }
     const std::size_t clocks = meter_ == kNone ? 1 : std::max<std::size_t>(1, meters_.size());
     clocks_.assign(clocks, ClockReader{calendar_});
-    shown_.assign(clocks, {});
     skipped_until_.assign(clocks, Instant::min());
     return {};
   }
@@ -499,7 +498,6 @@ class TableReader {
       return refuse("number " + in_quotes(cell(row, clock_)) + " is more than the intervals of " +
                     in_quotes(text) + " in " + calendar_.zone_name());
     }
-    note_clock_put_back(clock, written->clock);
     if (end_ && end_->clock == clock) {
       clocks_[clock].pass(end_->end);
       skipped_until_[clock] = end_->end.clock + end_->end.jump;
@@ -509,6 +507,7 @@ class TableReader {
                                clocks_[clock].ends_in_skipped_hour(written->clock);
     if (is_in_skipped && !has_value(row)) return std::nullopt;
     const auto instant = clocks_[clock].instant_of(written->clock);
+    if (clocks_[clock].came_again()) note_clock_put_back(written->clock);
     if (clocks_[clock].hour() != ClockReader::Hour::usual || !is_quiet()) {
       count_change(row, clocks_[clock], written->clock);
     }
@@ -520,24 +519,12 @@ class TableReader {
                   "own zone as 'timezone', such as \"Etc/GMT-1\"");
   }
 
-  /// A time that comes again, an hour or less after it was shown first; of stamps beside the grid
-  /// the second may be some seconds later.
-  void note_clock_put_back(std::size_t clock, Instant shown) {
-    auto& [last, step] = shown_[clock];
-    constexpr seconds kHour{3600};
-    constexpr int kBesideShare = 10;
-    const bool is_back = shown <= last && last - shown < kHour;
-    const bool is_beside =
-        shown > last && last > Instant::min() && kBesideShare * (shown - last) <= step;
-    if (shown > last && last > Instant::min() && !is_beside) step = shown - last;
-    if (is_back || is_beside) {
-      const metering::Day day{std::chrono::floor<std::chrono::days>(shown)};
-      if (facts_.put_back.size() < ClockFacts::kPutBackMax || facts_.put_back.contains(day)) {
-        facts_.put_back.try_emplace(day, shown);
-      }
-      ++facts_.repeated;
+  void note_clock_put_back(Instant shown) {
+    const metering::Day day{std::chrono::floor<std::chrono::days>(shown)};
+    if (facts_.put_back.size() < ClockFacts::kPutBackMax || facts_.put_back.contains(day)) {
+      facts_.put_back.try_emplace(day, shown);
     }
-    last = shown;
+    ++facts_.repeated;
   }
 
   /// Whether any meter's cell in it satisfies a condition of its number.
@@ -714,12 +701,7 @@ class TableReader {
   std::vector<std::size_t> next_of_name_;  ///< The next meter of the same name, or none.
   std::vector<bool> is_first_of_name_;
   std::size_t last_meter_ = 0;
-  std::vector<ClockReader> clocks_;  ///< One for the table, or one per meter of a long table.
-  struct Shown {
-    Instant last = Instant::min();
-    seconds step{0};  ///< Between the two times before.
-  };
-  std::vector<Shown> shown_;            ///< What each clock showed last.
+  std::vector<ClockReader> clocks_;     ///< One for the table, or one per meter of a long table.
   std::vector<Instant> skipped_until_;  ///< Where an hour that it skips is written.
   bool is_above_data_ = false;
   std::uint64_t above_ = 0;  ///< Rows between header and data so far.

@@ -158,6 +158,7 @@ std::optional<Instant> ClockReader::instant_of(Instant clock) {
   const bool is_again = last && clock >= *last && is_beside(clock - *last);
   if (last && clock > *last && !is_again) step_ = clock - *last;
   was_again_ = is_again;
+  came_again_ = is_again || (last && clock < *last && *last - clock < std::chrono::hours{1});
   // No zone changes twice within two days, so the offsets a day before and a day after
   // are the only ones.
   const auto before = with(clock, calendar_->utc_offset(clock - days{1}));
@@ -227,6 +228,7 @@ bool ClockReader::ends_in_skipped_hour(Instant clock) const {
 void ClockReader::pass(const EndAtChange& end) {
   last_clock_ = end.clock;
   in_second_pass_ = end.jump.count() < 0;
+  was_again_ = came_again_ = false;
   hour_ = Hour::usual;
 }
 

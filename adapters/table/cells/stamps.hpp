@@ -83,6 +83,10 @@ class ClockReader {
   /// Of the last time that was converted.
   [[nodiscard]] Hour hour() const { return hour_; }
 
+  /// Whether the last time is less than an hour before the one before it, or that time again, some
+  /// seconds later if stamps lie beside the grid: as where a clock is put back.
+  [[nodiscard]] bool came_again() const { return came_again_; }
+
   /// An interval's end where the clock changes may be written as the time of its begin plus its
   /// length: 02:00 where the clock goes from there to 03:00; 03:00 before 02:15 where it goes back.
   /// What the same clock shows next decides.
@@ -120,6 +124,7 @@ class ClockReader {
   std::optional<metering::Instant> last_clock_;
   std::chrono::seconds step_{0};  ///< Between the two times before.
   bool was_again_ = false;        ///< The time before was that before it, or some seconds later.
+  bool came_again_ = false;
   bool in_second_pass_ = false;
   Hour hour_ = Hour::usual;
 };

@@ -210,21 +210,18 @@ std::optional<DataFinding> SeriesDoubts::higher_estimates(std::string_view meter
     }
   }
   if (!farthest) return {};
-  std::array<char, 160> values{};
-  std::snprintf(
-      values.data(), values.size(),
-      "%d month%s a value that its quality flag calls an estimate is higher than the peak, "
-      "which counts measured ones: ",
-      count, count == 1 ? "" : "s");
   std::array<char, 64> kW{};
   std::snprintf(kW.data(), kW.size(), "%.4g kW beside a peak of %.4g kW", farthest->estimate_kW,
                 farthest->measured_kW);
-  return DataFinding{.meter = std::string{meter},
-                     .sentence = std::string{"In "} + values.data() + kW.data() + " (" +
-                                 (count > 1 ? "most so " : "") + to_string(farthest->at) + ").",
-                     .span = {farthest->at, farthest->at},
-                     .slots = count,
-                     .grade = DataFinding::Grade::warning};
+  return DataFinding{
+      .meter = std::string{meter},
+      .sentence = "In " + std::to_string(count) + (count == 1 ? " month" : " months") +
+                  " a value that its quality flag calls an estimate is higher than the peak, which "
+                  "counts measured ones: " +
+                  kW.data() + (count == 1 ? " (" : " (most so ") + to_string(farthest->at) + ").",
+      .span = {farthest->at, farthest->at},
+      .slots = count,
+      .grade = DataFinding::Grade::warning};
 }
 
 std::vector<DataFinding> SeriesDoubts::describe(std::string_view meter) const {

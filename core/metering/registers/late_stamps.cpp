@@ -9,7 +9,6 @@ namespace {
 using std::chrono::seconds;
 
 constexpr seconds kBesideMax{120};
-constexpr int kToleranceShare = 5;     // of an interval stamps may lie beside its start
 constexpr double kSameShare = 0.005;   // of an interval: a spread that moves no peak
 constexpr std::ptrdiff_t kAround = 4;  // samples to each side, by which the load is known
 constexpr double kSudden = 0.5;        // a load that differs by more from that around it

@@ -10,6 +10,10 @@
 
 namespace recald::metering {
 
+/// Stamps may lie beside the start of an interval by one in so many parts of it, or nobody knows
+/// which one they mean.
+inline constexpr int kToleranceShare = 5;
+
 enum class StampsBeside {
   none,     ///< All on the grid, or beside it by the same.
   as_read,  ///< Energy rises with the stamps: they are when the register was read.

@@ -12,6 +12,7 @@
 #include "adapters/models/versions_folder.hpp"
 #include "adapters/system/files/regular_file.hpp"
 #include "adapters/toml/toml_reader.hpp"
+#include "core/metering/registers/late_stamps.hpp"
 #include "core/model/parameter_library.hpp"
 #include "daemon/site/config/building_config.hpp"
 #include "daemon/site/config/service/site_path.hpp"
@@ -204,10 +205,9 @@ std::string read_meter_id(TomlReader& table) {
   return id;
 }
 
-/// Stamps may lie beside the grid by a fifth of the interval, or nobody knows which one they mean.
 seconds read_grid_tolerance(TomlReader& table, const std::optional<seconds>& interval) {
   const auto tolerance = table.duration("grid_tolerance").value_or(seconds{0});
-  const seconds longest = interval.value_or(std::chrono::hours{1}) / 5;
+  const seconds longest = interval.value_or(std::chrono::hours{1}) / metering::kToleranceShare;
   if (tolerance <= longest) return tolerance;
   table.problem_at("grid_tolerance",
                    fmt::format("'grid_tolerance' is {} s; it may be a fifth of the interval at "

@@ -116,6 +116,23 @@ StampsGuess guess_stamps(const SurveyedExport& survey, const metering::TimeSpan&
   return {{csv::Stamps::start, "guessed; a file of whole days would decide"}, 0};
 }
 
+/// A clock of its own, or the building's, may show days from midnight to midnight.
+StampsGuess stamps_of_days(const SurveyedExport& survey, const SurveyedMeter& meter,
+                           const metering::LocalCalendar& own_clock,
+                           const metering::LocalCalendar& calendar) {
+  const auto by_own = guess_stamps(survey, meter.span, meter.interval, own_clock);
+  const auto by_site = guess_stamps(survey, meter.span, meter.interval, calendar);
+  if (by_site.weight != by_own.weight) return by_site.weight > by_own.weight ? by_site : by_own;
+  if (own_clock.zone_name() != "Etc/UTC" || by_site.stamps.value == by_own.stamps.value) {
+    return by_own;
+  }
+  // Nobody lives by UTC: people download days of the building's calendar. A logger that stays on
+  // winter time has its own.
+  return {{by_site.stamps.value,
+           "guessed by the days of the building's clock; those of its own say otherwise"},
+          0};
+}
+
 void ask_for_winter_time(SurveyedExport& survey, const metering::LocalCalendar& calendar) {
   if (survey.meters.empty()) return;
   const SurveyedMeter& meter = survey.meters.front();
@@ -224,19 +241,7 @@ void take_results(SurveyedExport& survey, const WholeFile& whole,
     meter.refused = report.refused;
     meter.span = *report.span;
     meter.interval = report.shown.interval;
-    // A clock of its own, or the building's, may show days from midnight to midnight.
-    StampsGuess stamps = guess_stamps(survey, meter.span, meter.interval, own_clock);
-    const auto by_site = guess_stamps(survey, meter.span, meter.interval, calendar);
-    if (by_site.weight > stamps.weight) {
-      stamps = by_site;
-    } else if (own_clock.zone_name() == "Etc/UTC" && by_site.weight == stamps.weight &&
-               by_site.stamps.value != stamps.stamps.value) {
-      // Nobody lives by UTC: people download days of the building's calendar. A logger that stays
-      // on winter time has its own.
-      stamps = {{by_site.stamps.value,
-                 "guessed by the days of the building's clock; those of its own say otherwise"},
-                0};
-    }
+    const StampsGuess stamps = stamps_of_days(survey, meter, own_clock, calendar);
     meter.stamps = stamps.stamps;
     meter.stamps_weight = stamps.weight;
     if (meter.stamps.value == csv::Stamps::end) {
